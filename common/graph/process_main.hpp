@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "common/graph/graph_config.hpp"
+#include "common/messages/channels.hpp"
+#include "common/process/node.hpp"
+
+namespace clearway::graph {
+
+/// What main() of a process says about it.
+struct ProcessInfo {
+  std::string name;         ///< e.g. "preprocessor"; the program is clearway-<name>.
+  std::string description;  ///< One sentence, for --help.
+  messages::Channel<status_t> status_channel;
+};
+
+/// Makes the process object; it lives until the process stops.
+using MakeProcess = std::function<std::shared_ptr<void>(const GraphConfig&, process::Node&)>;
+
+/// The whole main() of a process of the graph: options, configuration, buses, run until a signal,
+/// last status. Returns the exit status.
+int ProcessMain(int argc, char** argv, const ProcessInfo& info, const MakeProcess& make);
+
+}  // namespace clearway::graph

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/process/lcm_connection.hpp"
+
+#include <dirent.h>
+#include <lcm/lcm.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+namespace clearway::process {
+namespace {
+
+// Messages that may wait while a handler runs. LCM drops the newest beyond it, silently; the
+// sequence numbers of our types then show the gap.
+constexpr int kQueueCapacity = 2000;
+
+constexpr char kAdvice[] =
+    " (LCM needs a multicast route; on a machine without a network: "
+    "ip link set lo multicast on && ip route add 224.0.0.0/4 dev lo)";
+
+// What the kernel will grant, so that LCM does not warn about the rest.
+int GrantableBufferBytes(int wanted) {
+  std::ifstream file("/proc/sys/net/core/rmem_max");
+  int limit = wanted;
+  file >> limit;
+  return std::min(wanted, limit);
+}
+
+std::string FullUrl(const BusConfig& config) {
+  return config.url + "?ttl=" + std::to_string(config.ttl) +
+         "&recv_buf_size=" + std::to_string(GrantableBufferBytes(config.receive_buffer_bytes));
+}
+
+std::string EscapeRegex(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (std::strchr("\\^$.|?*+()[]{}", c) != nullptr) escaped += '\\';
+    escaped += c;
+  }
+  return escaped;
+}
+
+// Granted buffer of the UDP socket that is bound to `port`; -1 when `fd` is no such socket.
+std::int64_t BufferOfSocket(int fd, int port) {
+  sockaddr_in address{};
+  socklen_t length = sizeof(address);
+  if (getsockname(fd, reinterpret_cast<sockaddr*>(&address), &length) != 0) return -1;
+  if (address.sin_family != AF_INET || ntohs(address.sin_port) != port) return -1;
+  int bytes = 0;
+  length = sizeof(bytes);
+  if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &bytes, &length) != 0) return -1;
+  return bytes / 2;  // The kernel doubles the value for its own bookkeeping.
+}
+
+}  // namespace
+
+LcmConnection::LcmConnection(const BusConfig& config)
+    : config_(config), full_url_(FullUrl(config)), lcm_(lcm_create(full_url_.c_str())) {
+  if (lcm_ == nullptr) throw std::runtime_error("cannot open LCM at " + full_url_ + kAdvice);
+}
+
+LcmConnection::~LcmConnection() { lcm_destroy(lcm_); }
+
+void LcmConnection::Publish(const std::string& channel, std::span<const std::byte> bytes) {
+  errno = 0;
+  if (lcm_publish(lcm_, channel.c_str(), bytes.data(), static_cast<unsigned>(bytes.size())) != 0) {
+    throw std::runtime_error("cannot publish " + std::to_string(bytes.size()) + " bytes on " +
+                             channel + " at " + full_url_ + ": " + std::strerror(errno) + kAdvice);
+  }
+}
+
+void LcmConnection::Subscribe(const std::string& channel, BytesHandler handler) {
+  subscriptions_.push_back({this, std::move(handler)});
+  lcm_subscription_t* const handle =
+      lcm_subscribe(lcm_,
+                    EscapeRegex(channel).c_str(),
+                    &LcmConnection::OnMessage,
+                    &subscriptions_.back());
+  if (handle == nullptr) {
+    subscriptions_.pop_back();
+    throw std::runtime_error("cannot receive from LCM at " + full_url_ + kAdvice);
+  }
+  lcm_subscription_set_queue_capacity(handle, kQueueCapacity);
+  file_descriptor_ = lcm_get_fileno(lcm_);
+}
+
+void LcmConnection::OnMessage(const lcm_recv_buf_t* buffer, const char* /*channel*/, void* user) {
+  const Subscription& subscription = *static_cast<Subscription*>(user);
+  LcmConnection& connection = *subscription.connection;
+  if (connection.handler_error_) return;  // Unwinding: the error of another handler leaves first.
+  try {
+    subscription.handler(
+        {static_cast<const std::byte*>(buffer->data), std::size_t{buffer->data_size}});
+  } catch (...) {
+    connection.handler_error_ = std::current_exception();
+  }
+}
+
+bool LcmConnection::HandleOne() {
+  if (file_descriptor_ < 0) return false;
+  const int handled = lcm_handle_timeout(lcm_, 0);
+  if (handler_error_) std::rethrow_exception(std::exchange(handler_error_, nullptr));
+  if (handled < 0 && errno != EINTR) {
+    throw std::runtime_error("cannot receive from LCM at " + full_url_ + ": " +
+                             std::strerror(errno));
+  }
+  return handled > 0;
+}
+
+std::int64_t LcmConnection::ReceiveBufferBytes() const {
+  if (file_descriptor_ < 0) return -1;
+  const std::unique_ptr<DIR, int (*)(DIR*)> folder(opendir("/proc/self/fd"), &closedir);
+  std::int64_t largest = -1;  // LCM's sending socket is not bound to the port.
+  for (const dirent* entry = folder ? readdir(folder.get()) : nullptr; entry != nullptr;
+       entry = readdir(folder.get())) {
+    largest = std::max(largest, BufferOfSocket(std::atoi(entry->d_name), PortOf(config_.url)));
+  }
+  return largest;
+}
+
+}  // namespace clearway::process

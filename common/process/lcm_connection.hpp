@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <list>
+#include <span>
+#include <string>
+
+#include "common/process/buses_config.hpp"
+
+// LCM's C structs, so that its headers stay out of ours.
+struct _lcm_t;
+struct _lcm_recv_buf_t;
+
+namespace clearway::process {
+
+/// One LCM object. Handlers may throw: the exception is kept while LCM's C code unwinds and leaves
+/// through HandleOne().
+class LcmConnection {
+ public:
+  using BytesHandler = std::function<void(std::span<const std::byte>)>;
+
+  explicit LcmConnection(const BusConfig& config);
+  ~LcmConnection();
+  LcmConnection(const LcmConnection&) = delete;
+  LcmConnection& operator=(const LcmConnection&) = delete;
+
+  void Publish(const std::string& channel, std::span<const std::byte> bytes);
+
+  /// `channel` is taken literally (LCM itself takes a regular expression).
+  void Subscribe(const std::string& channel, BytesHandler handler);
+
+  /// Handles one waiting message, if there is one; tells whether there was.
+  bool HandleOne();
+
+  /// Readable while messages wait; -1 before the first Subscribe().
+  [[nodiscard]] int file_descriptor() const { return file_descriptor_; }
+
+  /// Receive buffer that the kernel granted to this connection's socket; -1 before Subscribe().
+  [[nodiscard]] std::int64_t ReceiveBufferBytes() const;
+
+ private:
+  struct Subscription {
+    LcmConnection* connection;
+    BytesHandler handler;
+  };
+  static void OnMessage(const ::_lcm_recv_buf_t* buffer, const char* channel, void* user);
+
+  BusConfig config_;
+  std::string full_url_;
+  ::_lcm_t* lcm_ = nullptr;
+  int file_descriptor_ = -1;
+  std::list<Subscription> subscriptions_;  // A list: LCM keeps pointers to its elements.
+  std::exception_ptr handler_error_;
+};
+
+}  // namespace clearway::process

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common/process/live_runtime.hpp"
+
+#include <poll.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+#include "common/process/lcm_connection.hpp"
+
+namespace clearway::process {
+namespace {
+
+// Timers are looked at between messages; this bounds how many one bus may handle in a row.
+constexpr int kMessagesInARow = 8;
+constexpr std::int64_t kLongestWaitUs = 1'000'000;
+
+template <typename Clock>
+std::int64_t NowUs() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch())
+      .count();
+}
+
+int OpenSignalFd() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  // Blocked before LCM starts its thread, so that no thread takes them but ours.
+  if (pthread_sigmask(SIG_BLOCK, &signals, nullptr) != 0) {
+    throw std::runtime_error("cannot block signals");
+  }
+  const int fd = signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
+  if (fd < 0) throw std::runtime_error(std::string("signalfd: ") + std::strerror(errno));
+  return fd;
+}
+
+}  // namespace
+
+LiveRuntime::LiveRuntime(const BusesConfig& buses, std::string channel_prefix)
+    : buses_(buses), channel_prefix_(std::move(channel_prefix)), signal_fd_(OpenSignalFd()) {
+  connections_.push_back(std::make_unique<LcmConnection>(buses.local));
+  if (buses.shared.url != buses.local.url) {
+    connections_.push_back(std::make_unique<LcmConnection>(buses.shared));
+  }
+}
+
+LiveRuntime::~LiveRuntime() { close(signal_fd_); }
+
+LcmConnection& LiveRuntime::ConnectionOf(messages::BusId bus) const {
+  return bus == messages::BusId::kLocal ? *connections_.front() : *connections_.back();
+}
+
+void LiveRuntime::Run() {
+  std::vector<bool> readable(connections_.size());
+  while (!stop_) {
+    WaitForEvents(readable);
+    RunDueTimers();
+    for (std::size_t i = 0; i < connections_.size(); ++i) {
+      for (int n = 0; n < kMessagesInARow && readable[i] && !stop_; ++n) {
+        if (!connections_[i]->HandleOne()) break;
+        RunDueTimers();
+      }
+    }
+  }
+}
+
+void LiveRuntime::RunFor(std::int64_t duration_us) {
+  stop_ = false;
+  const TimerId timer = After(duration_us, [this] { Stop(); });
+  Run();
+  Cancel(timer);
+}
+
+void LiveRuntime::WaitForEvents(std::vector<bool>& readable) {
+  const std::int64_t due_us = timers_.NextDue().value_or(std::numeric_limits<std::int64_t>::max());
+  const std::int64_t wait_us =
+      std::clamp<std::int64_t>(due_us - MonotonicUs(), 0, kLongestWaitUs);
+  const timespec timeout{wait_us / 1'000'000, (wait_us % 1'000'000) * 1000};
+  std::vector<pollfd> events{{signal_fd_, POLLIN, 0}};
+  for (const auto& connection : connections_) {
+    events.push_back({connection->file_descriptor(), POLLIN, 0});  // -1 is ignored by poll.
+  }
+  const int count = ppoll(events.data(), events.size(), &timeout, nullptr);
+  if (count < 0 && errno != EINTR) {
+    throw std::runtime_error(std::string("ppoll: ") + std::strerror(errno));
+  }
+  for (std::size_t i = 0; i < readable.size(); ++i) {
+    readable[i] = count > 0 && (events[i + 1].revents & POLLIN) != 0;
+  }
+  if (count > 0 && events[0].revents != 0) stop_ = true;
+}
+
+void LiveRuntime::RunDueTimers() {
+  const std::int64_t now_us = MonotonicUs();
+  while (!stop_ && timers_.RunOne(now_us)) {
+  }
+}
+
+std::int64_t LiveRuntime::MonotonicUs() const { return NowUs<std::chrono::steady_clock>(); }
+
+std::int64_t LiveRuntime::UtimeNow() const { return NowUs<std::chrono::system_clock>(); }
+
+std::int64_t LiveRuntime::NewSession() {
+  std::random_device random;
+  return std::uniform_int_distribution<std::int64_t>(
+      1, std::numeric_limits<std::int64_t>::max())(random);
+}
+
+void LiveRuntime::Publish(messages::BusId bus,
+                          const std::string& channel,
+                          std::span<const std::byte> bytes) {
+  ConnectionOf(bus).Publish(channel_prefix_ + channel, bytes);
+}
+
+void LiveRuntime::Subscribe(messages::BusId bus, const std::string& channel, BytesHandler handler) {
+  ConnectionOf(bus).Subscribe(channel_prefix_ + channel, std::move(handler));
+}
+
+Runtime::TimerId LiveRuntime::Every(std::int64_t period_us, std::function<void()> callback) {
+  if (period_us <= 0) throw std::invalid_argument("Runtime::Every: period must be positive");
+  return timers_.Add(MonotonicUs() + period_us, period_us, std::move(callback));
+}
+
+Runtime::TimerId LiveRuntime::After(std::int64_t delay_us, std::function<void()> callback) {
+  return timers_.Add(
+      MonotonicUs() + std::max<std::int64_t>(delay_us, 0), 0, std::move(callback));
+}
+
+std::size_t LiveRuntime::MaxMessageBytes(messages::BusId bus) const {
+  const BusConfig& config = bus == messages::BusId::kLocal ? buses_.local : buses_.shared;
+  return static_cast<std::size_t>(config.max_message_bytes);
+}
+
+std::int64_t LiveRuntime::BurstIntervalUs(messages::BusId bus) const {
+  return bus == messages::BusId::kLocal ? buses_.local.burst_interval_us
+                                        : buses_.shared.burst_interval_us;
+}
+
+std::int64_t LiveRuntime::ReceiveBufferBytes() const {
+  std::int64_t least = -1;
+  for (const auto& connection : connections_) {
+    const std::int64_t bytes = connection->ReceiveBufferBytes();
+    if (bytes >= 0 && (least < 0 || bytes < least)) least = bytes;
+  }
+  return least;
+}
+
+}  // namespace clearway::process

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+
+#include "common/core/perception/clustering/clusterer.hpp"
+#include "common/core/scan/scan_assembler.hpp"
+#include "common/process/node.hpp"
+
+namespace clearway {
+
+/// OBSTACLE_POINTS -> DETECTIONS. See README.md beside this file.
+class ClustererProcess {
+ public:
+  ClustererProcess(core::Backend backend,
+                   const core::ClusteringConfig& config,
+                   process::Node& node);
+
+ private:
+  void OnObstaclePoints(const obstacle_points_t& message);
+  void KeepHeader(const obstacle_points_t& message);
+  [[nodiscard]] obstacle_points_t TakeHeader(std::int64_t scan_id);
+  void EmitDueScans();
+  void ProcessScan(const core::AssembledScan& scan);
+  void Refresh();
+  [[nodiscard]] process::State CurrentState() const;
+
+  core::Backend backend_;
+  process::Node& node_;
+  core::ScanAssembler assembler_;
+  std::unique_ptr<core::Clusterer> clusterer_;
+  std::deque<obstacle_points_t> headers_;  // Without points; one for each scan in flight.
+  std::optional<process::Runtime::TimerId> deadline_;
+  std::int64_t scans_ = 0;
+  std::int64_t incomplete_scans_ = 0;
+  bool last_complete_ = true;
+};
+
+}  // namespace clearway

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "processes/preprocessor/preprocessor_process.hpp"
+
+#include "common/messages/lidar_points.hpp"
+#include "common/messages/obstacle_points.hpp"
+#include "common/messages/odometry.hpp"
+#include "common/process/log.hpp"
+
+namespace clearway {
+namespace {
+
+using messages::channels::kFloor;
+using messages::channels::kLidarPoints;
+using messages::channels::kObstaclePoints;
+using messages::channels::kOdometry;
+
+constexpr std::int64_t kInputMissingUs = 500'000;
+// Unknown names come from outside: remember a few, so that each is told once.
+constexpr std::size_t kMaxUnknownNames = 16;
+
+}  // namespace
+
+PreprocessorProcess::PreprocessorProcess(const core::PreprocessorConfig& config,
+                                         const core::VehicleConfig& vehicle,
+                                         process::Node& node)
+    : vehicle_(vehicle),
+      node_(node),
+      assembler_(config.assembler, static_cast<int>(vehicle.sensors.size())),
+      preprocessor_(config, vehicle),
+      odometry_(config.odometry) {
+  node_.Subscribe<lidar_points_t>(kLidarPoints, [this](const auto& m) { OnLidarPoints(m); });
+  if (!vehicle_.stationary) {
+    node_.Subscribe<odometry_t>(kOdometry, [this](const auto& m) { OnOdometry(m); });
+  }
+  node_.BeforeStatus([this] { Refresh(); });
+  Refresh();
+}
+
+void PreprocessorProcess::OnLidarPoints(const lidar_points_t& message) {
+  const std::optional<int> sensor = vehicle_.FindSensor(message.sensor);
+  if (!sensor && unknown_sensors_.size() < kMaxUnknownNames &&
+      unknown_sensors_.insert(message.sensor).second) {
+    process::LogWarning("LIDAR_POINTS of a sensor that is not in the configuration: \"" +
+                        message.sensor + "\"");
+  }
+  const core::SliceOutcome outcome = assembler_.Add(messages::FromLcm(message, sensor.value_or(-1)),
+                                                    node_.runtime().MonotonicUs());
+  if (outcome == core::SliceOutcome::kInvalid) node_.CountInvalid();
+  EmitDueScans();
+}
+
+void PreprocessorProcess::OnOdometry(const odometry_t& message) {
+  const core::PoseBuffer::Outcome outcome =
+      odometry_.Add(message.utime, messages::T_odom_vehicle(message));
+  if (outcome == core::PoseBuffer::Outcome::kInvalid) node_.CountInvalid();
+}
+
+void PreprocessorProcess::EmitDueScans() {
+  for (const core::AssembledScan& scan : assembler_.Poll(node_.runtime().MonotonicUs())) {
+    ProcessScan(scan);
+  }
+  if (deadline_) node_.runtime().Cancel(*deadline_);
+  deadline_.reset();
+  if (const auto due_us = assembler_.NextDeadline()) {
+    deadline_ = node_.runtime().After(*due_us - node_.runtime().MonotonicUs(),
+                                      [this] { EmitDueScans(); });
+  }
+}
+
+void PreprocessorProcess::ProcessScan(const core::AssembledScan& scan) {
+  const std::int64_t begin_us = node_.runtime().MonotonicUs();
+  core::PreprocessedScan result = preprocessor_.Process(scan, &odometry_);
+  const std::int64_t duration_us = node_.runtime().MonotonicUs() - begin_us;
+
+  node_.Publish(kFloor, messages::ToFloor(result));
+  node_.PublishBurst(
+      kObstaclePoints,
+      messages::ToObstaclePoints(
+          result, duration_us, node_.runtime().MaxMessageBytes(kObstaclePoints.bus)));
+
+  node_.AddProcessingTime(duration_us);
+  ++scans_;
+  if (!result.complete) ++incomplete_scans_;
+  result.obstacles_vehicle.Clear();
+  last_ = std::move(result);
+  Refresh();
+}
+
+void PreprocessorProcess::Refresh() {
+  using core::SliceOutcome;
+  node_.SetCounter("scans", scans_);
+  node_.SetCounter("scans_incomplete", incomplete_scans_);
+  node_.SetCounter("slices_duplicate", assembler_.count(SliceOutcome::kDuplicate));
+  node_.SetCounter("slices_foreign", assembler_.count(SliceOutcome::kForeign));
+  node_.SetCounter("slices_inconsistent", assembler_.count(SliceOutcome::kInconsistent));
+  node_.SetCounter("slices_late", assembler_.count(SliceOutcome::kLate));
+  node_.SetCounter("slices_unknown_sensor", assembler_.count(SliceOutcome::kUnknownSensor));
+  node_.SetCounter("sender_restarts", assembler_.restarts());
+  node_.SetState(CurrentState());
+}
+
+process::State PreprocessorProcess::CurrentState() const {
+  if (!last_) return {status_t::STATE_WAITING, true, "no LIDAR_POINTS yet"};
+  if (node_.InputAgeUs() > kInputMissingUs) {
+    return {status_t::STATE_WAITING, true, "LIDAR_POINTS stopped: is the driver running?"};
+  }
+  if (!last_->missing_sensors.empty()) {
+    const auto sensor = static_cast<std::size_t>(last_->missing_sensors.front());
+    return {status_t::STATE_DEGRADED,
+            true,
+            "nothing from sensor \"" + vehicle_.sensors[sensor].name + "\""};
+  }
+  if (!last_->complete) {
+    return {status_t::STATE_DEGRADED,
+            true,
+            "slices of LIDAR_POINTS are missing from the last scan: " +
+                std::to_string(last_->missing_slices)};
+  }
+  if (last_->deskew == core::DeskewState::kNoOdometry) {
+    return {status_t::STATE_DEGRADED,
+            true,
+            "no ODOMETRY: points are where they were measured; set vehicle.stationary if the "
+            "vehicle stands still"};
+  }
+  if (last_->floor.state != core::FloorState::kFound) {
+    return {status_t::STATE_DEGRADED,
+            true,
+            last_->floor.state == core::FloorState::kHeld
+                ? "no floor found in the last scan: using the last good one"
+                : "no floor found: using z = 0 of the vehicle"};
+  }
+  return {status_t::STATE_OK, true, "working"};
+}
+
+}  // namespace clearway

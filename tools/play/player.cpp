@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/play/player.hpp"
+
+#include "common/core/scan/slice_cutter.hpp"
+#include "common/io/read_error.hpp"
+#include "common/messages/lidar_points.hpp"
+#include "common/process/log.hpp"
+
+namespace clearway::play {
+namespace {
+
+using messages::channels::kLidarPoints;
+
+core::SliceCut CutFor(std::size_t max_message_bytes) {
+  core::SliceCut cut;
+  cut.max_points = static_cast<int>((max_message_bytes - messages::kLidarHeaderBytes) /
+                                    messages::kLidarBytesPerPoint);
+  return cut;
+}
+
+}  // namespace
+
+Player::Player(process::Node& node,
+               ScanSource& source,
+               const PlayerSettings& settings,
+               std::function<void()> on_done)
+    : node_(node), source_(source), settings_(settings), on_done_(std::move(on_done)) {
+  ReportState(status_t::STATE_OK);
+  process::Runtime& runtime = node_.runtime();
+  const auto settle_us = static_cast<std::int64_t>(settings_.settle_s * 1e6);
+  monotonic_minus_utime_us_ = runtime.MonotonicUs() + settle_us - StampOf(0);
+  runtime.After(settle_us, [this] { BeginNextScan(); });
+}
+
+std::int64_t Player::StampOf(std::size_t scan) const {
+  const std::size_t n = source_.size();
+  const std::int64_t loop_us = source_.utime(n - 1) - source_.utime(0) + source_.period_us();
+  return source_.utime(scan % n) + static_cast<std::int64_t>(scan / n) * loop_us;
+}
+
+void Player::BeginNextScan() {
+  do {
+    if (next_scan_ >= source_.size() && !settings_.loop) {
+      ReportState(status_t::STATE_DONE);
+      on_done_();
+      return;
+    }
+    LoadScan();
+    ++next_scan_;
+  } while (slices_.empty());
+  next_slice_ = 0;
+  ScheduleSlice();
+}
+
+void Player::LoadScan() {
+  const std::int64_t utime = StampOf(next_scan_);
+  slices_.clear();
+  try {
+    PlayedScan scan = source_.Read(next_scan_ % source_.size());
+    slices_ = core::CutIntoSlices({.scan_id = static_cast<std::int64_t>(next_scan_),
+                                   .utime_start = utime,
+                                   .utime_end = utime + source_.period_us(),
+                                   .cloud_sensor = std::move(scan.cloud_sensor)},
+                                  CutFor(node_.runtime().MaxMessageBytes(kLidarPoints.bus)));
+  } catch (const io::ReadError& error) {
+    process::LogError(error.what());
+    ++progress_.unreadable;
+  }
+}
+
+void Player::ScheduleSlice() {
+  const core::Slice& slice = slices_[next_slice_];
+  const std::int64_t period_us = slice.scan_end_utime - slice.scan_utime;
+  const std::int64_t end_utime =
+      slice.scan_utime + period_us * (slice.slice_index + 1) / slice.slice_count;
+  process::Runtime& runtime = node_.runtime();
+  runtime.After(end_utime + monotonic_minus_utime_us_ - runtime.MonotonicUs(),
+                [this] { SendSlice(); });
+}
+
+void Player::SendSlice() {
+  node_.Publish(kLidarPoints, messages::ToLcm(slices_[next_slice_], settings_.sensor));
+  if (++next_slice_ < slices_.size()) {
+    ScheduleSlice();
+    return;
+  }
+  ++progress_.played;
+  ReportState(status_t::STATE_OK);
+  BeginNextScan();
+}
+
+void Player::ReportState(std::int8_t code) {
+  node_.SetCounter("scans_played", static_cast<std::int64_t>(progress_.played));
+  node_.SetCounter("scans_unreadable", static_cast<std::int64_t>(progress_.unreadable));
+  node_.SetCounter("scans_total", static_cast<std::int64_t>(source_.size()));
+  node_.SetState({code,
+                  true,
+                  "played " + std::to_string(progress_.played) + " of " +
+                      std::to_string(source_.size()) + " scans"});
+}
+
+}  // namespace clearway::play

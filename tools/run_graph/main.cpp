@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+
+#include <CLI/CLI.hpp>
+
+#include "common/graph/options.hpp"
+#include "common/process/log.hpp"
+#include "tools/run_graph/graph_run.hpp"
+#include "tools/run_graph/picture.hpp"
+#include "tools/run_graph/report.hpp"
+
+namespace clearway::run_graph {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  graph::Options common;
+  std::string input;
+  fs::path output = "clearway_run";
+  fs::path json;
+  fs::path log;
+  std::optional<double> stop_after_s;
+  bool headless = false;
+};
+
+void AddArguments(CLI::App& app, Arguments& arguments) {
+  graph::AddOptions(app, arguments.common);
+  app.get_option("--config")->required(false);
+  app.add_option("--input",
+                 arguments.input,
+                 "Folder, list (.txt), .pcd, .bin, scene (.xml), LCM log, or \"live\"; without it "
+                 "the generated lab is played")
+      ->type_name("PATH");
+  app.add_option("--output", arguments.output, "Folder for the picture and the processes' logs")
+      ->take_last()
+      ->type_name("FOLDER");
+  app.add_option("--json", arguments.json, "Write the figures to this file")->type_name("FILE");
+  app.add_option("--log", arguments.log, "Write all messages to this LCM log")->type_name("FILE");
+  app.add_option("--for", arguments.stop_after_s, "Stop after this time")
+      ->check(CLI::PositiveNumber)
+      ->type_name("SECONDS");
+  app.add_flag("--headless", arguments.headless, "No progress line");
+}
+
+fs::path ProgramFolder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
+
+// The shipped configurations: installed beside the programs, else those of the sources.
+fs::path ConfigFolder() {
+  const fs::path installed = ProgramFolder().parent_path() / "share" / "clearway" / "config";
+  return fs::exists(installed) ? installed : fs::path(CLEARWAY_SOURCE_CONFIG);
+}
+
+bool IsLcmLog(const fs::path& path) {
+  if (!fs::is_regular_file(path)) return false;
+  constexpr std::array<unsigned char, 4> kSync{0xED, 0xA1, 0xDA, 0x01};
+  std::array<char, 4> head{};
+  std::ifstream(path, std::ios::binary).read(head.data(), head.size());
+  return std::equal(head.begin(), head.end(), kSync.begin(), [](char a, unsigned char b) {
+    return static_cast<unsigned char>(a) == b;
+  });
+}
+
+InputKind KindOf(const std::string& input) {
+  if (input == "live") return InputKind::kLive;
+  return IsLcmLog(input) ? InputKind::kLog : InputKind::kPlayed;
+}
+
+// Without an input the lab is played, and only then there is a configuration to start from.
+void FillIn(Arguments& arguments) {
+  if (arguments.common.config_path.empty()) {
+    if (!arguments.input.empty()) {
+      throw std::runtime_error("--input needs --config: the shipped ones are in " +
+                               ConfigFolder().string());
+    }
+    arguments.common.config_path = ConfigFolder() / "lab.xml";
+  }
+  if (arguments.input.empty()) arguments.input = ConfigFolder() / "lab_scene.xml";
+  if (arguments.input != "live" && !fs::exists(arguments.input)) {
+    throw std::runtime_error("--input " + arguments.input + ": no such file or folder");
+  }
+}
+
+std::vector<std::string> ChildArguments(const graph::Options& options) {
+  std::vector<std::string> arguments{"--config", options.config_path};
+  for (const std::string& set : options.overrides) {
+    arguments.insert(arguments.end(), {"--set", set});
+  }
+  if (!options.lcm_url.empty()) arguments.insert(arguments.end(), {"--lcm-url", options.lcm_url});
+  if (!options.channel_prefix.empty()) {
+    arguments.insert(arguments.end(), {"--channel-prefix", options.channel_prefix});
+  }
+  return arguments;
+}
+
+RunSettings SettingsOf(const Arguments& arguments, const graph::GraphConfig& config) {
+  RunSettings settings;
+  settings.kind = KindOf(arguments.input);
+  settings.input = arguments.input;
+  settings.program_folder = ProgramFolder();
+  settings.output_folder = arguments.output;
+  settings.child_arguments = ChildArguments(arguments.common);
+  settings.lcm_url = config.buses.local.url + "?ttl=0";
+  settings.channel_prefix = arguments.common.channel_prefix;
+  settings.stop_after_s = arguments.stop_after_s;
+  settings.log = arguments.log;
+  settings.show_progress = !arguments.headless && isatty(STDERR_FILENO) != 0;
+  return settings;
+}
+
+void Report(const Arguments& arguments, const graph::GraphConfig& config, const GraphRun& run) {
+  const RunSummary summary = run.statistics().Summarise();
+  std::fputs(FormatTable(summary, run.machine_use()).c_str(), stdout);
+  if (const ScanRecord* const scan = run.statistics().LastDetectedScan()) {
+    const fs::path picture = arguments.output / "last_scan.png";
+    plot::WritePng(MakePicture(*scan,
+                               run.statistics().last_permit(),
+                               config.vehicle,
+                               config.preprocessor.floor.distance_threshold_m),
+                   picture);
+    std::printf("\npicture of the last scan: %s\n", picture.c_str());
+  }
+  if (arguments.json.empty()) return;
+  std::ofstream file(arguments.json);
+  file << FormatJson(summary, run.machine_use());
+  file.close();
+  if (!file) throw std::runtime_error(arguments.json.string() + ": cannot write");
+}
+
+int RunAndReport(const Arguments& arguments, const graph::GraphConfig& config) {
+  fs::create_directories(arguments.output);
+  process::LiveRuntime runtime(config.buses, arguments.common.channel_prefix);
+  process::Node node(runtime,
+                     {"run", CLEARWAY_VERSION, config::Digest(config)},
+                     messages::channels::kRunStatus);
+  GraphRun run(runtime, node, SettingsOf(arguments, config));
+  run.Run();
+  Report(arguments, config, run);
+  return graph::kExitOk;
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app("Starts the whole graph over LCM, plays an input through it and sums up",
+               "clearway-run");
+  Arguments arguments;
+  AddArguments(app, arguments);
+  return graph::GuardedMain(app, arguments.common, argc, argv, [&] {
+    FillIn(arguments);
+    const auto config = graph::LoadConfig(arguments.common);
+    if (graph::AnsweredByConfig(arguments.common, config)) return graph::kExitOk;
+    return RunAndReport(arguments, config.root);
+  });
+}
+
+}  // namespace
+}  // namespace clearway::run_graph
+
+int main(int argc, char** argv) { return clearway::run_graph::Main(argc, argv); }

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tools/run_graph/run_statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clearway::run_graph {
+namespace {
+
+constexpr std::size_t kRecentScans = 8;
+constexpr std::size_t kMaxWaitingSlices = 10000;
+
+double Milliseconds(std::int64_t us) { return static_cast<double>(us) / 1000.0; }
+
+std::optional<double> Mean(double sum, std::size_t count) {
+  if (count == 0) return std::nullopt;
+  return sum / static_cast<double>(count);
+}
+
+}  // namespace
+
+std::optional<Quantiles> QuantilesOf(std::vector<double> values) {
+  if (values.empty()) return std::nullopt;
+  std::sort(values.begin(), values.end());
+  const auto at = [&values](double p) {
+    const double rank = std::ceil(p * static_cast<double>(values.size()));
+    return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+  };
+  return Quantiles{at(0.5), at(0.99)};
+}
+
+ScanRecord& RunStatistics::Record(ScanKey key) {
+  ScanRecord& record = recent_[key];
+  if (recent_.size() > kRecentScans && recent_.begin()->first != key) {
+    recent_.erase(recent_.begin());
+  }
+  return record;
+}
+
+void RunStatistics::OnLidarPoints(const lidar_points_t& message, std::int64_t arrival_us) {
+  last_input_us_ = arrival_us;
+  Arrivals& arrivals = arrivals_[message.scan_utime];
+  arrivals.last_slice_us = arrival_us;
+  if (++arrivals.slices_seen[message.sensor] == message.slice_count) {
+    played_.insert(message.scan_utime);
+  }
+  waiting_.push_back({message.scan_id, message.slice_index, arrival_us});
+  if (waiting_.size() > kMaxWaitingSlices) waiting_.pop_front();
+  Record(message.scan_utime).raw.push_back(message);
+}
+
+void RunStatistics::OnObstaclePoints(const obstacle_points_t& message) {
+  Record(message.scan_utime).obstacles.push_back(message);
+  if (message.slice_index != 0) return;
+  ++obstacle_scans_;
+  processing_ms_["preprocessor"].push_back(Milliseconds(message.processing_us));
+  sum_in_ += message.points_in;
+  sum_voxel_ += message.points_voxel;
+  sum_floor_ += message.points_floor;
+  if (message.map_state == obstacle_points_t::MAP_FILTERED) {
+    ++mapped_scans_;
+    sum_map_ += message.points_map;
+  }
+}
+
+void RunStatistics::OnFloor(const floor_t& message) {
+  for (auto& [key, record] : recent_) {
+    if (!record.raw.empty() && record.raw.front().scan_end_utime == message.utime) {
+      record.floor = message;
+    }
+  }
+}
+
+void RunStatistics::OnDetections(const detections_t& message, std::int64_t arrival_us) {
+  const ScanKey key = message.scan_utime;
+  Record(key).detections.push_back(message);
+  sum_detections_ += message.n;
+  if (message.slice_index == 0) {
+    processing_ms_["clusterer"].push_back(Milliseconds(message.processing_us));
+    if (message.scan_state == detections_t::SCAN_INCOMPLETE) ++incomplete_;
+  }
+  if (++detection_slices_[key] != message.slice_count) return;
+  detected_.insert(key);
+  last_detected_ = key;
+  const auto arrivals = arrivals_.find(key);
+  if (arrivals == arrivals_.end()) return;
+  scan_to_detections_ms_.push_back(Milliseconds(arrival_us - arrivals->second.last_slice_us));
+}
+
+void RunStatistics::OnDrivePermit(const drive_permit_t& message, std::int64_t arrival_us) {
+  const bool is_new = !last_permit_ || last_permit_->slice_scan_id != message.slice_scan_id ||
+                      last_permit_->slice_index != message.slice_index;
+  last_permit_ = message;
+  if (!is_new) return;
+  processing_ms_["stop_guard"].push_back(Milliseconds(message.processing_us));
+  guarded_scans_.insert(message.slice_scan_id);
+  // The permit answers this slice and all that came before it.
+  const auto answered = std::find_if(
+      waiting_.begin(), waiting_.end(), [&message](const WaitingSlice& slice) {
+        return slice.scan_id == message.slice_scan_id && slice.slice_index == message.slice_index;
+      });
+  if (answered == waiting_.end()) return;
+  for (auto slice = waiting_.begin(); slice != std::next(answered); ++slice) {
+    slice_to_permit_ms_.push_back(Milliseconds(arrival_us - slice->arrival_us));
+  }
+  waiting_.erase(waiting_.begin(), std::next(answered));
+}
+
+void RunStatistics::OnStatus(const status_t& message) {
+  missing_[{message.process, message.session}] = message.missing;
+  statuses_[message.process] = message;
+}
+
+const ScanRecord* RunStatistics::LastDetectedScan() const {
+  if (!last_detected_) return nullptr;
+  const auto found = recent_.find(*last_detected_);
+  return found == recent_.end() ? nullptr : &found->second;
+}
+
+const status_t* RunStatistics::StatusOf(const std::string& process) const {
+  const auto found = statuses_.find(process);
+  return found == statuses_.end() ? nullptr : &found->second;
+}
+
+RunSummary RunStatistics::Summarise() const {
+  RunSummary summary;
+  summary.scans_played = played_.size();
+  summary.scans_detected = static_cast<std::size_t>(
+      std::count_if(detected_.begin(), detected_.end(), [this](ScanKey key) {
+        return played_.contains(key);
+      }));
+  summary.scans_incomplete = incomplete_;
+  for (const auto& [process, missing] : missing_) summary.messages_lost += missing;
+  for (const auto& [process, times] : processing_ms_) {
+    const std::size_t scans = process == "stop_guard" ? guarded_scans_.size() : times.size();
+    summary.stages[process] = {scans, QuantilesOf(times)};
+  }
+  summary.points_in = Mean(sum_in_, obstacle_scans_);
+  summary.points_voxel = Mean(sum_voxel_, obstacle_scans_);
+  summary.points_floor = Mean(sum_floor_, obstacle_scans_);
+  summary.points_map = Mean(sum_map_, mapped_scans_);
+  summary.detections = Mean(sum_detections_, detected_.size());
+  summary.scan_to_detections_ms = QuantilesOf(scan_to_detections_ms_);
+  summary.slice_to_permit_ms = QuantilesOf(slice_to_permit_ms_);
+  return summary;
+}
+
+}  // namespace clearway::run_graph

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <clearway/detections_t.hpp>
+#include <clearway/drive_permit_t.hpp>
+#include <clearway/floor_t.hpp>
+#include <clearway/lidar_points_t.hpp>
+#include <clearway/obstacle_points_t.hpp>
+#include <clearway/status_t.hpp>
+
+namespace clearway::run_graph {
+
+/// Median and 99th percentile of a list; nothing for an empty one. The p-quantile of n values is
+/// the one at rank ceil(p n).
+struct Quantiles {
+  double median = 0.0;
+  double p99 = 0.0;
+};
+[[nodiscard]] std::optional<Quantiles> QuantilesOf(std::vector<double> values);
+
+/// The messages of one scan, as far as they came.
+struct ScanRecord {
+  std::vector<lidar_points_t> raw;
+  std::vector<obstacle_points_t> obstacles;
+  std::vector<detections_t> detections;
+  std::optional<floor_t> floor;
+};
+
+/// One process over the whole run.
+struct StageSummary {
+  std::size_t scans = 0;
+  std::optional<Quantiles> processing_ms;
+};
+
+/// What a run came to. What was not measured is absent.
+struct RunSummary {
+  std::size_t scans_played = 0;      ///< Scans of which every slice was seen on LIDAR_POINTS.
+  std::size_t scans_detected = 0;    ///< Of them, with all of their DETECTIONS.
+  std::size_t scans_incomplete = 0;  ///< DETECTIONS that say that points were missing.
+  std::int64_t messages_lost = 0;    ///< Gaps that the processes of the graph counted.
+  std::map<std::string, StageSummary> stages;
+  std::optional<double> points_in;  ///< Means per scan.
+  std::optional<double> points_voxel;
+  std::optional<double> points_floor;
+  std::optional<double> points_map;  ///< Only with a map filter.
+  std::optional<double> detections;
+  std::optional<Quantiles> scan_to_detections_ms;
+  std::optional<Quantiles> slice_to_permit_ms;
+};
+
+/// Listens to all messages of a graph and sums up. Arrival times are on one monotonic clock.
+class RunStatistics {
+ public:
+  void OnLidarPoints(const lidar_points_t& message, std::int64_t arrival_us);
+  void OnObstaclePoints(const obstacle_points_t& message);
+  void OnFloor(const floor_t& message);
+  void OnDetections(const detections_t& message, std::int64_t arrival_us);
+  void OnDrivePermit(const drive_permit_t& message, std::int64_t arrival_us);
+  void OnStatus(const status_t& message);
+
+  [[nodiscard]] RunSummary Summarise() const;
+
+  /// The newest scan with DETECTIONS, for a picture; nothing when there was none.
+  [[nodiscard]] const ScanRecord* LastDetectedScan() const;
+  [[nodiscard]] const std::optional<drive_permit_t>& last_permit() const { return last_permit_; }
+
+  /// The newest status of a process; null when there was none.
+  [[nodiscard]] const status_t* StatusOf(const std::string& process) const;
+
+  /// Number of scans with DETECTIONS, and of those seen on LIDAR_POINTS.
+  [[nodiscard]] std::size_t num_detected() const { return detected_.size(); }
+  [[nodiscard]] std::size_t num_played() const { return played_.size(); }
+
+  /// When the last LIDAR_POINTS came; nothing before the first.
+  [[nodiscard]] std::optional<std::int64_t> last_input_us() const { return last_input_us_; }
+
+ private:
+  // A sender that starts anew counts its scans from 0 again: a scan is known by its stamp.
+  using ScanKey = std::int64_t;
+  struct Arrivals {
+    std::map<std::string, int> slices_seen;  // By sensor.
+    std::int64_t last_slice_us = 0;
+  };
+  struct WaitingSlice {
+    std::int64_t scan_id;
+    std::int32_t slice_index;
+    std::int64_t arrival_us;
+  };
+
+  ScanRecord& Record(ScanKey key);
+
+  std::map<ScanKey, Arrivals> arrivals_;
+  std::map<ScanKey, ScanRecord> recent_;
+  std::map<ScanKey, int> detection_slices_;
+  std::set<ScanKey> played_;
+  std::set<ScanKey> detected_;
+  std::set<std::int64_t> guarded_scans_;
+  std::optional<ScanKey> last_detected_;
+  std::deque<WaitingSlice> waiting_;
+  std::map<std::string, status_t> statuses_;
+  std::map<std::pair<std::string, std::int64_t>, std::int64_t> missing_;  // By process and session.
+  std::map<std::string, std::vector<double>> processing_ms_;
+  std::vector<double> scan_to_detections_ms_;
+  std::vector<double> slice_to_permit_ms_;
+  std::size_t obstacle_scans_ = 0;
+  std::size_t mapped_scans_ = 0;
+  std::size_t incomplete_ = 0;
+  double sum_in_ = 0.0;
+  double sum_voxel_ = 0.0;
+  double sum_floor_ = 0.0;
+  double sum_map_ = 0.0;
+  double sum_detections_ = 0.0;
+  std::optional<drive_permit_t> last_permit_;
+  std::optional<std::int64_t> last_input_us_;
+};
+
+}  // namespace clearway::run_graph
