@@ -2,7 +2,6 @@
 #include "common/process/buses_config.hpp"
 
 #include <arpa/inet.h>
-
 #include <charconv>
 
 namespace clearway::process {

@@ -17,26 +17,29 @@ struct BusConfig {
 
   template <typename Self, typename Visitor>
   static void Visit(Self& self, Visitor& visitor) {
-    visitor.Text("url",
-                 self.url,
-                 "LCM address udpm://GROUP:PORT, without options. LCM 1.3.1 separates buses by port, "
-                 "not by group.");
+    visitor.Text(
+        "url",
+        self.url,
+        "LCM address udpm://GROUP:PORT, without options. LCM 1.3.1 separates buses by port, "
+        "not by group.");
     visitor.Integer("ttl",
                     self.ttl,
                     0,
                     255,
                     "Multicast time to live: 0 stays on this host, 1 reaches the local network.");
-    visitor.Integer("max_message_bytes",
-                    self.max_message_bytes,
-                    1000,
-                    65000,
-                    "Largest message [bytes]; what is larger travels in slices. 58000 within a host, "
-                    "1400 between hosts, where one lost frame loses the message.");
-    visitor.Integer("receive_buffer_bytes",
-                    self.receive_buffer_bytes,
-                    65536,
-                    268435456,
-                    "Socket buffer to ask for [bytes]; the kernel grants net.core.rmem_max at most.");
+    visitor.Integer(
+        "max_message_bytes",
+        self.max_message_bytes,
+        1000,
+        65000,
+        "Largest message [bytes]; what is larger travels in slices. 58000 within a host, "
+        "1400 between hosts, where one lost frame loses the message.");
+    visitor.Integer(
+        "receive_buffer_bytes",
+        self.receive_buffer_bytes,
+        65536,
+        268435456,
+        "Socket buffer to ask for [bytes]; the kernel grants net.core.rmem_max at most.");
     visitor.Milliseconds("burst_interval_ms",
                          self.burst_interval_us,
                          0.0,

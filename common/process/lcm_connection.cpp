@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/process/lcm_connection.hpp"
 
-#include <dirent.h>
-#include <lcm/lcm.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <netinet/in.h>
 #include <stdexcept>
+#include <sys/socket.h>
 #include <utility>
+
+#include <dirent.h>
+#include <lcm/lcm.h>
 
 namespace clearway::process {
 namespace {
@@ -67,7 +67,9 @@ LcmConnection::LcmConnection(const BusConfig& config)
   if (lcm_ == nullptr) throw std::runtime_error("cannot open LCM at " + full_url_ + kAdvice);
 }
 
-LcmConnection::~LcmConnection() { lcm_destroy(lcm_); }
+LcmConnection::~LcmConnection() {
+  lcm_destroy(lcm_);
+}
 
 void LcmConnection::Publish(const std::string& channel, std::span<const std::byte> bytes) {
   errno = 0;
@@ -79,11 +81,8 @@ void LcmConnection::Publish(const std::string& channel, std::span<const std::byt
 
 void LcmConnection::Subscribe(const std::string& channel, BytesHandler handler) {
   subscriptions_.push_back({this, std::move(handler)});
-  lcm_subscription_t* const handle =
-      lcm_subscribe(lcm_,
-                    EscapeRegex(channel).c_str(),
-                    &LcmConnection::OnMessage,
-                    &subscriptions_.back());
+  lcm_subscription_t* const handle = lcm_subscribe(
+      lcm_, EscapeRegex(channel).c_str(), &LcmConnection::OnMessage, &subscriptions_.back());
   if (handle == nullptr) {
     subscriptions_.pop_back();
     throw std::runtime_error("cannot receive from LCM at " + full_url_ + kAdvice);

@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/process/live_runtime.hpp"
 
-#include <poll.h>
-#include <sys/signalfd.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
 #include <limits>
+#include <poll.h>
 #include <random>
 #include <stdexcept>
+#include <sys/signalfd.h>
+#include <unistd.h>
 
 #include "common/process/lcm_connection.hpp"
 
 namespace clearway::process {
 namespace {
 
-// Timers are looked at between messages; this bounds how many one bus may handle in a row.
-constexpr int kMessagesInARow = 8;
+// Messages of one bus that are handled before timers get their turn.
+constexpr int kMessagesInARow = 64;
 constexpr std::int64_t kLongestWaitUs = 1'000'000;
 
 template <typename Clock>
@@ -53,7 +52,9 @@ LiveRuntime::LiveRuntime(const BusesConfig& buses, std::string channel_prefix)
   }
 }
 
-LiveRuntime::~LiveRuntime() { close(signal_fd_); }
+LiveRuntime::~LiveRuntime() {
+  close(signal_fd_);
+}
 
 LcmConnection& LiveRuntime::ConnectionOf(messages::BusId bus) const {
   return bus == messages::BusId::kLocal ? *connections_.front() : *connections_.back();
@@ -63,13 +64,14 @@ void LiveRuntime::Run() {
   std::vector<bool> readable(connections_.size());
   while (!stop_) {
     WaitForEvents(readable);
-    RunDueTimers();
+    // What has arrived comes before what is due: a process that did not get the processor for a
+    // while must not judge its input as missing before it has looked.
     for (std::size_t i = 0; i < connections_.size(); ++i) {
       for (int n = 0; n < kMessagesInARow && readable[i] && !stop_; ++n) {
         if (!connections_[i]->HandleOne()) break;
-        RunDueTimers();
       }
     }
+    RunDueTimers();
   }
 }
 
@@ -82,8 +84,7 @@ void LiveRuntime::RunFor(std::int64_t duration_us) {
 
 void LiveRuntime::WaitForEvents(std::vector<bool>& readable) {
   const std::int64_t due_us = timers_.NextDue().value_or(std::numeric_limits<std::int64_t>::max());
-  const std::int64_t wait_us =
-      std::clamp<std::int64_t>(due_us - MonotonicUs(), 0, kLongestWaitUs);
+  const std::int64_t wait_us = std::clamp<std::int64_t>(due_us - MonotonicUs(), 0, kLongestWaitUs);
   const timespec timeout{wait_us / 1'000'000, (wait_us % 1'000'000) * 1000};
   std::vector<pollfd> events{{signal_fd_, POLLIN, 0}};
   for (const auto& connection : connections_) {
@@ -105,9 +106,13 @@ void LiveRuntime::RunDueTimers() {
   }
 }
 
-std::int64_t LiveRuntime::MonotonicUs() const { return NowUs<std::chrono::steady_clock>(); }
+std::int64_t LiveRuntime::MonotonicUs() const {
+  return NowUs<std::chrono::steady_clock>();
+}
 
-std::int64_t LiveRuntime::UtimeNow() const { return NowUs<std::chrono::system_clock>(); }
+std::int64_t LiveRuntime::UtimeNow() const {
+  return NowUs<std::chrono::system_clock>();
+}
 
 std::int64_t LiveRuntime::NewSession() {
   std::random_device random;
@@ -131,8 +136,7 @@ Runtime::TimerId LiveRuntime::Every(std::int64_t period_us, std::function<void()
 }
 
 Runtime::TimerId LiveRuntime::After(std::int64_t delay_us, std::function<void()> callback) {
-  return timers_.Add(
-      MonotonicUs() + std::max<std::int64_t>(delay_us, 0), 0, std::move(callback));
+  return timers_.Add(MonotonicUs() + std::max<std::int64_t>(delay_us, 0), 0, std::move(callback));
 }
 
 std::size_t LiveRuntime::MaxMessageBytes(messages::BusId bus) const {

@@ -14,16 +14,24 @@ void SetUpLog(const std::string& program, const std::string& level) {
     throw std::invalid_argument("log level \"" + level +
                                 "\": expected trace, debug, info, warn, error or off");
   }
-  auto logger = std::make_shared<spdlog::logger>(program,
-                                                 std::make_shared<spdlog::sinks::stderr_sink_st>());
+  auto logger =
+      std::make_shared<spdlog::logger>(program, std::make_shared<spdlog::sinks::stderr_sink_st>());
   logger->set_pattern("%Y-%m-%dT%H:%M:%S.%e%z %l %n: %v");
   logger->set_level(parsed);
   spdlog::set_default_logger(std::move(logger));
 }
 
-void LogDebug(const std::string& message) { spdlog::debug("{}", message); }
-void LogInfo(const std::string& message) { spdlog::info("{}", message); }
-void LogWarning(const std::string& message) { spdlog::warn("{}", message); }
-void LogError(const std::string& message) { spdlog::error("{}", message); }
+void LogDebug(const std::string& message) {
+  spdlog::debug("{}", message);
+}
+void LogInfo(const std::string& message) {
+  spdlog::info("{}", message);
+}
+void LogWarning(const std::string& message) {
+  spdlog::warn("{}", message);
+}
+void LogError(const std::string& message) {
+  spdlog::error("{}", message);
+}
 
 }  // namespace clearway::process

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/process/node.hpp"
 
-#include <unistd.h>
-
 #include <array>
+#include <unistd.h>
 
 #include "common/process/log.hpp"
 

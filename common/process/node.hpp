@@ -50,24 +50,21 @@ class Node {
   template <typename Message>
   void Subscribe(const messages::Channel<Message>& channel,
                  std::function<void(const Message&)> handler) {
-    runtime_.Subscribe(
-        channel.bus,
-        channel.name,
-        [this, name = std::string(channel.name), handler = std::move(handler)](
-            std::span<const std::byte> bytes) {
-          const std::optional<Message> message = messages::Decode<Message>(bytes);
-          if (!message) {
-            ++invalid_;
-            return;
-          }
-          NoteReceived();
-          if constexpr (requires { message->sensor; }) {
-            Track(name + '/' + message->sensor, message->session, message->sequence);
-          } else if constexpr (requires { message->session; }) {
-            Track(name, message->session, message->sequence);
-          }
-          handler(*message);
-        });
+    runtime_.Subscribe(channel.bus,
+                       channel.name,
+                       [this, name = std::string(channel.name), handler = std::move(handler)](
+                           std::span<const std::byte> bytes) {
+                         const std::optional<Message> message = messages::Decode<Message>(bytes);
+                         if (!message) {
+                           ++invalid_;
+                           return;
+                         }
+                         NoteReceived();
+                         if constexpr (requires { message->session; }) {
+                           Track(StreamOf(name, *message), message->session, message->sequence);
+                         }
+                         handler(*message);
+                       });
   }
 
   /// Sends a message now. Fills session and sequence where the type has them.
@@ -116,11 +113,21 @@ class Node {
     std::vector<std::byte> bytes;
   };
 
+  // What is numbered together: a channel or, where the type names a sensor, that sensor on it.
+  template <typename Message>
+  static std::string StreamOf(const std::string& channel, const Message& message) {
+    if constexpr (requires { message.sensor; }) {
+      return channel + '/' + message.sensor;
+    } else {
+      return channel;
+    }
+  }
+
   template <typename Message>
   void Number(const std::string& channel, Message& message) {
     if constexpr (requires { message.session; }) {
       message.session = session_;
-      message.sequence = next_sequence_[channel]++;
+      message.sequence = next_sequence_[StreamOf(channel, message)]++;
     }
   }
 

@@ -43,7 +43,8 @@ class Runtime {
   /// Calls `callback` every `period_us` > 0, first after one period. Missed calls are not made up.
   virtual TimerId Every(std::int64_t period_us, std::function<void()> callback) = 0;
 
-  /// Calls `callback` once, `delay_us` from now (at once, but not from within this call, when <= 0).
+  /// Calls `callback` once, `delay_us` from now (at once, but not from within this call, when <=
+  /// 0).
   virtual TimerId After(std::int64_t delay_us, std::function<void()> callback) = 0;
 
   /// The timer does not fire any more. Unknown ids are ignored.

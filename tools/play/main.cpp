@@ -60,9 +60,8 @@ int ExitStatus(const Player& player) {
 
 int PlayLive(const Arguments& arguments, const graph::GraphConfig& config, ScanSource& source) {
   process::LiveRuntime runtime(config.buses, arguments.common.channel_prefix);
-  process::Node node(runtime,
-                     {"play", CLEARWAY_VERSION, config::Digest(config)},
-                     messages::channels::kPlayStatus);
+  process::Node node(
+      runtime, {"play", CLEARWAY_VERSION, config::Digest(config)}, messages::channels::kPlayStatus);
   const Player player(node, source, arguments.player, [&runtime] { runtime.Stop(); });
   runtime.Every(200'000, [&] { ShowProgress(player, source); });
   runtime.Run();
@@ -76,12 +75,12 @@ int WriteLog(const Arguments& arguments, const graph::GraphConfig& config, ScanS
   process::SimulatedRuntime runtime(
       source.utime(0),
       {.max_message_bytes = static_cast<std::size_t>(config.buses.local.max_message_bytes)});
-  runtime.SetTap([&](messages::BusId, const std::string& channel, std::span<const std::byte> bytes) {
-    log.Write(runtime.UtimeNow(), arguments.common.channel_prefix + channel, bytes);
-  });
-  process::Node node(runtime,
-                     {"play", CLEARWAY_VERSION, config::Digest(config)},
-                     messages::channels::kPlayStatus);
+  runtime.SetTap(
+      [&](messages::BusId, const std::string& channel, std::span<const std::byte> bytes) {
+        log.Write(runtime.UtimeNow(), arguments.common.channel_prefix + channel, bytes);
+      });
+  process::Node node(
+      runtime, {"play", CLEARWAY_VERSION, config::Digest(config)}, messages::channels::kPlayStatus);
   bool done = false;
   const Player player(node, source, arguments.player, [&done] { done = true; });
   while (!done) {
@@ -120,4 +119,6 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace clearway::play
 
-int main(int argc, char** argv) { return clearway::play::Main(argc, argv); }
+int main(int argc, char** argv) {
+  return clearway::play::Main(argc, argv);
+}

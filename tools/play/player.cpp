@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/play/player.hpp"
 
+#include <algorithm>
+
 #include "common/core/scan/slice_cutter.hpp"
 #include "common/io/read_error.hpp"
 #include "common/messages/lidar_points.hpp"
@@ -11,8 +13,13 @@ namespace {
 
 using messages::channels::kLidarPoints;
 
-core::SliceCut CutFor(std::size_t max_message_bytes) {
+// A slice lasts about this long, as a sensor's driver would send it.
+constexpr std::int64_t kSliceUs = 10'000;
+
+core::SliceCut CutFor(std::size_t max_message_bytes, std::int64_t period_us) {
   core::SliceCut cut;
+  cut.min_slices =
+      static_cast<int>(std::clamp<std::int64_t>(period_us / kSliceUs, 1, core::kMaxSlices));
   cut.max_points = static_cast<int>((max_message_bytes - messages::kLidarHeaderBytes) /
                                     messages::kLidarBytesPerPoint);
   return cut;
@@ -57,11 +64,12 @@ void Player::LoadScan() {
   slices_.clear();
   try {
     PlayedScan scan = source_.Read(next_scan_ % source_.size());
-    slices_ = core::CutIntoSlices({.scan_id = static_cast<std::int64_t>(next_scan_),
-                                   .utime_start = utime,
-                                   .utime_end = utime + source_.period_us(),
-                                   .cloud_sensor = std::move(scan.cloud_sensor)},
-                                  CutFor(node_.runtime().MaxMessageBytes(kLidarPoints.bus)));
+    slices_ = core::CutIntoSlices(
+        {.scan_id = static_cast<std::int64_t>(next_scan_),
+         .utime_start = utime,
+         .utime_end = utime + source_.period_us(),
+         .cloud_sensor = std::move(scan.cloud_sensor)},
+        CutFor(node_.runtime().MaxMessageBytes(kLidarPoints.bus), source_.period_us()));
   } catch (const io::ReadError& error) {
     process::LogError(error.what());
     ++progress_.unreadable;

@@ -39,6 +39,7 @@ class SceneScans final : public ScanSource {
   }
   [[nodiscard]] PlayedScan Read(std::size_t i) override {
     core::ScanRequest request;
+    request.T_map_vehicle = scene_.start.T_map_vehicle();
     request.T_vehicle_sensor = T_vehicle_sensor_;
     request.begin_us = static_cast<std::int64_t>(i) * period_us_;
     request.duration_us = period_us_;

@@ -108,8 +108,7 @@ void GraphRun::StartFeeding() {
   } else {
     return;
   }
-  feeder_ =
-      std::make_unique<ChildProcess>("play", command, settings_.output_folder / "play.log");
+  feeder_ = std::make_unique<ChildProcess>("play", command, settings_.output_folder / "play.log");
 }
 
 std::string GraphRun::WhoIsNotReady() const {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <unistd.h>
-
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 
@@ -47,7 +46,9 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
   app.add_flag("--headless", arguments.headless, "No progress line");
 }
 
-fs::path ProgramFolder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
+fs::path ProgramFolder() {
+  return fs::read_symlink("/proc/self/exe").parent_path();
+}
 
 // The shipped configurations: installed beside the programs, else those of the sources.
 fs::path ConfigFolder() {
@@ -134,9 +135,8 @@ void Report(const Arguments& arguments, const graph::GraphConfig& config, const 
 int RunAndReport(const Arguments& arguments, const graph::GraphConfig& config) {
   fs::create_directories(arguments.output);
   process::LiveRuntime runtime(config.buses, arguments.common.channel_prefix);
-  process::Node node(runtime,
-                     {"run", CLEARWAY_VERSION, config::Digest(config)},
-                     messages::channels::kRunStatus);
+  process::Node node(
+      runtime, {"run", CLEARWAY_VERSION, config::Digest(config)}, messages::channels::kRunStatus);
   GraphRun run(runtime, node, SettingsOf(arguments, config));
   run.Run();
   Report(arguments, config, run);
@@ -159,4 +159,6 @@ int Main(int argc, char** argv) {
 }  // namespace
 }  // namespace clearway::run_graph
 
-int main(int argc, char** argv) { return clearway::run_graph::Main(argc, argv); }
+int main(int argc, char** argv) {
+  return clearway::run_graph::Main(argc, argv);
+}

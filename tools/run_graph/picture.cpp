@@ -14,6 +14,7 @@ namespace {
 
 // Drawn length of the corridor while nothing stands in it.
 constexpr double kFreeCorridor_m = 4.0;
+constexpr std::size_t kMaxLabels = 15;
 
 std::string Format(const char* format, double value) {
   std::array<char, 96> text{};
@@ -73,11 +74,30 @@ plot::PictureDetection ToPicture(const detection_t& detection) {
   drawn.centroid = {detection.centroid[0], detection.centroid[1], detection.centroid[2]};
   drawn.z_min_m = detection.z_min;
   drawn.z_max_m = detection.z_max;
-  drawn.label = std::to_string(detection.id) +
-                Format(" %.1f m",
-                       std::hypot(static_cast<double>(detection.nearest[0]),
-                                  static_cast<double>(detection.nearest[1])));
   return drawn;
+}
+
+double DistanceOf(const detection_t& detection) {
+  return std::hypot(static_cast<double>(detection.nearest[0]),
+                    static_cast<double>(detection.nearest[1]));
+}
+
+// All detections are drawn; only the nearest ones are named, so that the names can be read.
+void AddDetections(const ScanRecord& scan, plot::ScanPicture& picture) {
+  std::vector<const detection_t*> nearest_first;
+  for (const detections_t& slice : scan.detections) {
+    for (const detection_t& detection : slice.detections) nearest_first.push_back(&detection);
+  }
+  std::stable_sort(
+      nearest_first.begin(), nearest_first.end(), [](const detection_t* a, const detection_t* b) {
+        return DistanceOf(*a) < DistanceOf(*b);
+      });
+  for (const detection_t* detection : nearest_first) {
+    picture.detections.push_back(ToPicture(*detection));
+    if (picture.detections.size() > kMaxLabels) continue;
+    picture.detections.back().label =
+        std::to_string(detection->id) + Format(" %.1f m", DistanceOf(*detection));
+  }
 }
 
 void AddCorridor(const drive_permit_t& permit,
@@ -91,9 +111,9 @@ void AddCorridor(const drive_permit_t& permit,
     left = std::max(left, corner.y());
     right = std::min(right, corner.y());
   }
-  const auto length_m = static_cast<float>(
-      permit.free_distance_m < 0.0 ? kFreeCorridor_m
-                                   : std::min(permit.free_distance_m, kFreeCorridor_m));
+  const auto length_m = static_cast<float>(permit.free_distance_m < 0.0
+                                               ? kFreeCorridor_m
+                                               : std::min(permit.free_distance_m, kFreeCorridor_m));
   plot::PictureCorridor corridor;
   corridor.polygon = {
       {front, right}, {front + length_m, right}, {front + length_m, left}, {front, left}};
@@ -106,10 +126,9 @@ void AddCorridor(const drive_permit_t& permit,
 
 void AddText(const ScanRecord& scan, plot::ScanPicture& picture) {
   const obstacle_points_t& header = scan.obstacles.front();
-  picture.text_lines.push_back("scan " + std::to_string(header.scan_id) +
-                               (header.scan_state == obstacle_points_t::SCAN_COMPLETE
-                                    ? ", complete"
-                                    : ", INCOMPLETE"));
+  picture.text_lines.push_back(
+      "scan " + std::to_string(header.scan_id) +
+      (header.scan_state == obstacle_points_t::SCAN_COMPLETE ? ", complete" : ", INCOMPLETE"));
   if (scan.floor) {
     constexpr const char* kStates[] = {"found", "held from an earlier scan", "not found: z = 0"};
     picture.text_lines.push_back(
@@ -129,21 +148,16 @@ plot::ScanPicture MakePicture(const ScanRecord& scan,
   picture.title = "clearway: last scan of the run";
   AddRawPoints(scan, vehicle, floor_threshold_m, picture);
   AddObstacles(scan, picture);
-  for (const detections_t& slice : scan.detections) {
-    for (const detection_t& detection : slice.detections) {
-      picture.detections.push_back(ToPicture(detection));
-    }
-  }
+  AddDetections(scan, picture);
   for (const Eigen::Vector2d& corner : vehicle.Footprint()) {
     picture.footprint.push_back(corner.cast<float>());
   }
-  picture.sensor_origin =
-      vehicle.sensors.front().T_vehicle_sensor().translation().cast<float>();
+  picture.sensor_origin = vehicle.sensors.front().T_vehicle_sensor().translation().cast<float>();
   if (!scan.obstacles.empty()) AddText(scan, picture);
   if (permit) {
     AddCorridor(*permit, vehicle, picture);
-    picture.text_lines.push_back(
-        Format("permit: forward %.2f m/s, ", permit->forward_mps) + permit->text);
+    picture.text_lines.push_back(Format("permit: forward %.2f m/s, ", permit->forward_mps) +
+                                 permit->text);
   }
   return picture;
 }

@@ -10,7 +10,9 @@ namespace {
 constexpr std::size_t kRecentScans = 8;
 constexpr std::size_t kMaxWaitingSlices = 10000;
 
-double Milliseconds(std::int64_t us) { return static_cast<double>(us) / 1000.0; }
+double Milliseconds(std::int64_t us) {
+  return static_cast<double>(us) / 1000.0;
+}
 
 std::optional<double> Mean(double sum, std::size_t count) {
   if (count == 0) return std::nullopt;
@@ -91,12 +93,12 @@ void RunStatistics::OnDrivePermit(const drive_permit_t& message, std::int64_t ar
   const bool is_new = !last_permit_ || last_permit_->slice_scan_id != message.slice_scan_id ||
                       last_permit_->slice_index != message.slice_index;
   last_permit_ = message;
-  if (!is_new) return;
+  if (!is_new || message.slice_scan_id < 0) return;
   processing_ms_["stop_guard"].push_back(Milliseconds(message.processing_us));
   guarded_scans_.insert(message.slice_scan_id);
   // The permit answers this slice and all that came before it.
-  const auto answered = std::find_if(
-      waiting_.begin(), waiting_.end(), [&message](const WaitingSlice& slice) {
+  const auto answered =
+      std::find_if(waiting_.begin(), waiting_.end(), [&message](const WaitingSlice& slice) {
         return slice.scan_id == message.slice_scan_id && slice.slice_index == message.slice_index;
       });
   if (answered == waiting_.end()) return;
@@ -125,10 +127,8 @@ const status_t* RunStatistics::StatusOf(const std::string& process) const {
 RunSummary RunStatistics::Summarise() const {
   RunSummary summary;
   summary.scans_played = played_.size();
-  summary.scans_detected = static_cast<std::size_t>(
-      std::count_if(detected_.begin(), detected_.end(), [this](ScanKey key) {
-        return played_.contains(key);
-      }));
+  summary.scans_detected = static_cast<std::size_t>(std::count_if(
+      detected_.begin(), detected_.end(), [this](ScanKey key) { return played_.contains(key); }));
   summary.scans_incomplete = incomplete_;
   for (const auto& [process, missing] : missing_) summary.messages_lost += missing;
   for (const auto& [process, times] : processing_ms_) {

@@ -31,8 +31,8 @@ struct NearestHit {
 class HitMemory {
  public:
   static constexpr double kCell_m = 0.1;
-  static constexpr int kMaxAgreeing =
-      4;  ///< Most hits that a cell counts; the limit of min_points.
+  /// Most hits that a cell counts; the limit of min_points.
+  static constexpr int kMaxAgreeing = 4;
 
   /// Hits whose way straight ahead exceeds `reach_m` are not kept.
   HitMemory(const SweptFootprint& footprint, double reach_m, int min_points);

@@ -16,7 +16,7 @@ namespace clearway::core {
 
 /// Settings of ScanAssembler. XML element: <preprocessor><assembler>.
 struct ScanAssemblerConfig {
-  std::int64_t grace_us = 50'000;
+  std::int64_t grace_us = 100'000;
   int max_in_flight = 4;
   std::int64_t restart_us = 2'000'000;
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "common/core/simulation/scene_shapes.hpp"
 
 namespace clearway::core {
@@ -20,11 +22,31 @@ struct SceneFloor {
   }
 };
 
+/// Where the vehicle stands when the scene starts, in the map frame. XML element: <start>.
+struct SceneStart {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double yaw_rad = 0.0;
+
+  [[nodiscard]] Eigen::Isometry3d T_map_vehicle() const {
+    return Eigen::Translation3d(x_m, y_m, 0.0) *
+           Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ());
+  }
+
+  template <typename Self, typename Visitor>
+  static void Visit(Self& self, Visitor& visitor) {
+    visitor.Number("x_m", self.x_m, -1000.0, 1000.0, "Position of the vehicle's origin [m].");
+    visitor.Number("y_m", self.y_m, -1000.0, 1000.0, "Position of the vehicle's origin [m].");
+    visitor.Degrees("yaw_deg", self.yaw_rad, -180.0, 180.0, "Heading, from map's x axis [deg].");
+  }
+};
+
 /// A small world: what stands, moves, appears and vanishes in it, in the map frame (x, y level,
 /// z up, floor at z = 0). XML element: <scene>.
 /// Objects are numbered in the order of the lists below, floor and misses apart; see
 /// DescribeObjects() in scene_geometry.hpp.
 struct SceneConfig {
+  SceneStart start;
   SceneFloor floor;
   std::vector<SceneRoom> rooms;
   std::vector<SceneWall> walls;
@@ -39,6 +61,7 @@ struct SceneConfig {
 
   template <typename Self, typename Visitor>
   static void Visit(Self& self, Visitor& visitor) {
+    visitor.Group("start", self.start, "Where the vehicle starts.");
     visitor.Group("floor", self.floor, "The floor.");
     visitor.List("room", self.rooms, "Rectangular rooms.");
     visitor.List("wall", self.walls, "Single walls.");
