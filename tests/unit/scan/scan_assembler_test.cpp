@@ -23,7 +23,7 @@ using testing::SizeIs;
 
 constexpr std::int64_t kScan_us = 100'000;
 constexpr std::int64_t kEpoch_us = 1'600'000'000'000'000;
-constexpr std::int64_t kGrace_us = 50'000;
+constexpr std::int64_t kGrace_us = ScanAssemblerConfig{}.grace_us;
 
 // Slice `index` of scan `id`: one point whose x tells the index, whose y the sensor, whose z the
 // id.
