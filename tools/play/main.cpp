@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
 #include <optional>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 
@@ -45,7 +46,9 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
   app.add_flag("--loop", arguments.player.loop, "Begin again at the end");
 }
 
+// On a terminal only: in a file, one line at the end says as much.
 void ShowProgress(const Player& player, const ScanSource& source) {
+  if (isatty(STDERR_FILENO) == 0) return;
   std::fprintf(stderr,
                "\rplayed %zu of %zu scans%s",
                player.progress().played,
@@ -54,8 +57,13 @@ void ShowProgress(const Player& player, const ScanSource& source) {
 }
 
 int ExitStatus(const Player& player) {
-  std::fputc('\n', stderr);
-  return player.progress().unreadable == 0 ? graph::kExitOk : graph::kExitFailure;
+  const Player::Progress& progress = player.progress();
+  std::fprintf(stderr,
+               "%splayed %zu scans, %zu could not be read\n",
+               isatty(STDERR_FILENO) != 0 ? "\n" : "",
+               progress.played,
+               progress.unreadable);
+  return progress.unreadable == 0 ? graph::kExitOk : graph::kExitFailure;
 }
 
 int PlayLive(const Arguments& arguments, const graph::GraphConfig& config, ScanSource& source) {

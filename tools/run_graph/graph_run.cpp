@@ -133,8 +133,9 @@ bool GraphRun::IsInputOver() {
   if (feeder_) {
     const std::optional<int> status = feeder_->ExitStatus();
     if (status.value_or(0) != 0) {
-      throw std::runtime_error("the input ended with status " + std::to_string(*status) + ":\n" +
-                               feeder_->LastWords());
+      input_problem_ =
+          "the input ended with status " + std::to_string(*status) + ":\n" + feeder_->LastWords();
+      if (statistics_.num_played() == 0) throw std::runtime_error(input_problem_);
     }
     return status.has_value();
   }

@@ -57,6 +57,9 @@ class GraphRun {
   [[nodiscard]] const RunStatistics& statistics() const { return statistics_; }
   [[nodiscard]] const std::optional<MachineUse>& machine_use() const { return machine_use_; }
 
+  /// What went wrong with a part of the input (scans that could not be read); empty: nothing.
+  [[nodiscard]] const std::string& input_problem() const { return input_problem_; }
+
  private:
   enum class Phase { kStarting, kFeeding, kDraining, kDone };
 
@@ -86,6 +89,7 @@ class GraphRun {
   std::int64_t feeding_start_us_ = 0;
   double cpu_at_start_s_ = 0.0;
   std::optional<MachineUse> machine_use_;
+  std::string input_problem_;
 };
 
 }  // namespace clearway::run_graph

@@ -140,7 +140,9 @@ int RunAndReport(const Arguments& arguments, const graph::GraphConfig& config) {
   GraphRun run(runtime, node, SettingsOf(arguments, config));
   run.Run();
   Report(arguments, config, run);
-  return graph::kExitOk;
+  if (run.input_problem().empty()) return graph::kExitOk;
+  std::fprintf(stderr, "clearway-run: %s", run.input_problem().c_str());
+  return graph::kExitFailure;
 }
 
 int Main(int argc, char** argv) {
