@@ -20,6 +20,8 @@ namespace {
 
 // Messages of one bus that are handled before timers get their turn.
 constexpr int kMessagesInARow = 64;
+// Nor do timers wait for longer than this when each message is much work.
+constexpr std::int64_t kTimersWaitUs = 10'000;
 constexpr std::int64_t kLongestWaitUs = 1'000'000;
 
 template <typename Clock>
@@ -66,9 +68,10 @@ void LiveRuntime::Run() {
     WaitForEvents(readable);
     // What has arrived comes before what is due: a process that did not get the processor for a
     // while must not judge its input as missing before it has looked.
+    const std::int64_t until_us = MonotonicUs() + kTimersWaitUs;
     for (std::size_t i = 0; i < connections_.size(); ++i) {
       for (int n = 0; n < kMessagesInARow && readable[i] && !stop_; ++n) {
-        if (!connections_[i]->HandleOne()) break;
+        if (!connections_[i]->HandleOne() || MonotonicUs() >= until_us) break;
       }
     }
     RunDueTimers();
@@ -97,7 +100,13 @@ void LiveRuntime::WaitForEvents(std::vector<bool>& readable) {
   for (std::size_t i = 0; i < readable.size(); ++i) {
     readable[i] = count > 0 && (events[i + 1].revents & POLLIN) != 0;
   }
-  if (count > 0 && events[0].revents != 0) stop_ = true;
+  if (count > 0 && events[0].revents != 0) {
+    // Taken off the queue, so that a later RunFor() is not ended by the same signal.
+    signalfd_siginfo signal{};
+    while (read(signal_fd_, &signal, sizeof(signal)) == sizeof(signal)) {
+    }
+    stop_ = true;
+  }
 }
 
 void LiveRuntime::RunDueTimers() {

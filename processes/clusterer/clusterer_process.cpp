@@ -40,7 +40,10 @@ ClustererProcess::ClustererProcess(core::Backend backend,
                                    process::Node& node)
     : backend_(backend),
       node_(node),
-      assembler_(core::ScanAssemblerConfig{}, 1),
+      input_(node,
+             core::ScanAssemblerConfig{},
+             1,
+             [this](const core::AssembledScan& scan) { ProcessScan(scan); }),
       clusterer_(core::MakeClusterer(backend, config)) {
   node_.Subscribe<obstacle_points_t>(kObstaclePoints,
                                      [this](const auto& m) { OnObstaclePoints(m); });
@@ -49,11 +52,9 @@ ClustererProcess::ClustererProcess(core::Backend backend,
 }
 
 void ClustererProcess::OnObstaclePoints(const obstacle_points_t& message) {
-  const core::SliceOutcome outcome =
-      assembler_.Add(messages::FromLcm(message), node_.runtime().MonotonicUs());
-  if (outcome == core::SliceOutcome::kInvalid) node_.CountInvalid();
+  const core::SliceOutcome outcome = input_.Add(messages::FromLcm(message));
   if (outcome == core::SliceOutcome::kAccepted) KeepHeader(message);
-  EmitDueScans();
+  input_.Emit();
 }
 
 // Scans leave the assembler in the order in which their first slices were accepted when a sender
@@ -77,18 +78,6 @@ obstacle_points_t ClustererProcess::TakeHeader(std::int64_t scan_id) {
   return header;
 }
 
-void ClustererProcess::EmitDueScans() {
-  for (const core::AssembledScan& scan : assembler_.Poll(node_.runtime().MonotonicUs())) {
-    ProcessScan(scan);
-  }
-  if (deadline_) node_.runtime().Cancel(*deadline_);
-  deadline_.reset();
-  if (const auto due_us = assembler_.NextDeadline()) {
-    deadline_ = node_.runtime().After(*due_us - node_.runtime().MonotonicUs(),
-                                      [this] { EmitDueScans(); });
-  }
-}
-
 void ClustererProcess::ProcessScan(const core::AssembledScan& scan) {
   const std::int64_t begin_us = node_.runtime().MonotonicUs();
   const core::PointCloud& cloud = scan.sensors.front().cloud_sensor;
@@ -104,8 +93,8 @@ void ClustererProcess::ProcessScan(const core::AssembledScan& scan) {
 
   obstacle_points_t header = TakeHeader(scan.scan_id);
   if (!scan.complete) header.scan_state = obstacle_points_t::SCAN_INCOMPLETE;
-  std::vector<detections_t> slices = messages::ToDetections(
-      header, detections, node_.runtime().MaxMessageBytes(kDetections.bus));
+  std::vector<detections_t> slices =
+      messages::ToDetections(header, detections, node_.runtime().MaxMessageBytes(kDetections.bus));
   for (detections_t& slice : slices) {
     slice.points_in = static_cast<std::int32_t>(cloud.size());
     slice.processing_us = static_cast<std::int32_t>(duration_us);
@@ -113,21 +102,12 @@ void ClustererProcess::ProcessScan(const core::AssembledScan& scan) {
   node_.PublishBurst(kDetections, std::move(slices));
 
   node_.AddProcessingTime(duration_us);
-  ++scans_;
   last_complete_ = scan.complete;
-  if (!scan.complete) ++incomplete_scans_;
   Refresh();
 }
 
 void ClustererProcess::Refresh() {
-  using core::SliceOutcome;
-  node_.SetCounter("scans", scans_);
-  node_.SetCounter("scans_incomplete", incomplete_scans_);
-  node_.SetCounter("slices_duplicate", assembler_.count(SliceOutcome::kDuplicate));
-  node_.SetCounter("slices_foreign", assembler_.count(SliceOutcome::kForeign));
-  node_.SetCounter("slices_inconsistent", assembler_.count(SliceOutcome::kInconsistent));
-  node_.SetCounter("slices_late", assembler_.count(SliceOutcome::kLate));
-  node_.SetCounter("sender_restarts", assembler_.restarts());
+  input_.SetCounters();
   node_.SetState(CurrentState());
 }
 

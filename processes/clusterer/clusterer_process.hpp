@@ -4,11 +4,10 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <optional>
 
 #include "common/core/perception/clustering/clusterer.hpp"
-#include "common/core/scan/scan_assembler.hpp"
 #include "common/process/node.hpp"
+#include "common/process/scan_input.hpp"
 
 namespace clearway {
 
@@ -23,19 +22,15 @@ class ClustererProcess {
   void OnObstaclePoints(const obstacle_points_t& message);
   void KeepHeader(const obstacle_points_t& message);
   [[nodiscard]] obstacle_points_t TakeHeader(std::int64_t scan_id);
-  void EmitDueScans();
   void ProcessScan(const core::AssembledScan& scan);
   void Refresh();
   [[nodiscard]] process::State CurrentState() const;
 
   core::Backend backend_;
   process::Node& node_;
-  core::ScanAssembler assembler_;
+  process::ScanInput input_;
   std::unique_ptr<core::Clusterer> clusterer_;
   std::deque<obstacle_points_t> headers_;  // Without points; one for each scan in flight.
-  std::optional<process::Runtime::TimerId> deadline_;
-  std::int64_t scans_ = 0;
-  std::int64_t incomplete_scans_ = 0;
   bool last_complete_ = true;
 };
 

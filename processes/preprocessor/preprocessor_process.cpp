@@ -25,7 +25,10 @@ PreprocessorProcess::PreprocessorProcess(const core::PreprocessorConfig& config,
                                          process::Node& node)
     : vehicle_(vehicle),
       node_(node),
-      assembler_(config.assembler, static_cast<int>(vehicle.sensors.size())),
+      input_(node,
+             config.assembler,
+             static_cast<int>(vehicle.sensors.size()),
+             [this](const core::AssembledScan& scan) { ProcessScan(scan); }),
       preprocessor_(config, vehicle),
       odometry_(config.odometry) {
   node_.Subscribe<lidar_points_t>(kLidarPoints, [this](const auto& m) { OnLidarPoints(m); });
@@ -43,28 +46,14 @@ void PreprocessorProcess::OnLidarPoints(const lidar_points_t& message) {
     process::LogWarning("LIDAR_POINTS of a sensor that is not in the configuration: \"" +
                         message.sensor + "\"");
   }
-  const core::SliceOutcome outcome = assembler_.Add(messages::FromLcm(message, sensor.value_or(-1)),
-                                                    node_.runtime().MonotonicUs());
-  if (outcome == core::SliceOutcome::kInvalid) node_.CountInvalid();
-  EmitDueScans();
+  input_.Add(messages::FromLcm(message, sensor.value_or(-1)));
+  input_.Emit();
 }
 
 void PreprocessorProcess::OnOdometry(const odometry_t& message) {
   const core::PoseBuffer::Outcome outcome =
       odometry_.Add(message.utime, messages::T_odom_vehicle(message));
   if (outcome == core::PoseBuffer::Outcome::kInvalid) node_.CountInvalid();
-}
-
-void PreprocessorProcess::EmitDueScans() {
-  for (const core::AssembledScan& scan : assembler_.Poll(node_.runtime().MonotonicUs())) {
-    ProcessScan(scan);
-  }
-  if (deadline_) node_.runtime().Cancel(*deadline_);
-  deadline_.reset();
-  if (const auto due_us = assembler_.NextDeadline()) {
-    deadline_ = node_.runtime().After(*due_us - node_.runtime().MonotonicUs(),
-                                      [this] { EmitDueScans(); });
-  }
 }
 
 void PreprocessorProcess::ProcessScan(const core::AssembledScan& scan) {
@@ -79,23 +68,13 @@ void PreprocessorProcess::ProcessScan(const core::AssembledScan& scan) {
           result, duration_us, node_.runtime().MaxMessageBytes(kObstaclePoints.bus)));
 
   node_.AddProcessingTime(duration_us);
-  ++scans_;
-  if (!result.complete) ++incomplete_scans_;
   result.obstacles_vehicle.Clear();
   last_ = std::move(result);
   Refresh();
 }
 
 void PreprocessorProcess::Refresh() {
-  using core::SliceOutcome;
-  node_.SetCounter("scans", scans_);
-  node_.SetCounter("scans_incomplete", incomplete_scans_);
-  node_.SetCounter("slices_duplicate", assembler_.count(SliceOutcome::kDuplicate));
-  node_.SetCounter("slices_foreign", assembler_.count(SliceOutcome::kForeign));
-  node_.SetCounter("slices_inconsistent", assembler_.count(SliceOutcome::kInconsistent));
-  node_.SetCounter("slices_late", assembler_.count(SliceOutcome::kLate));
-  node_.SetCounter("slices_unknown_sensor", assembler_.count(SliceOutcome::kUnknownSensor));
-  node_.SetCounter("sender_restarts", assembler_.restarts());
+  input_.SetCounters();
   node_.SetState(CurrentState());
 }
 

@@ -7,9 +7,9 @@
 
 #include "common/core/geometry/pose_buffer.hpp"
 #include "common/core/preprocessing/preprocessor.hpp"
-#include "common/core/scan/scan_assembler.hpp"
 #include "common/core/vehicle.hpp"
 #include "common/process/node.hpp"
+#include "common/process/scan_input.hpp"
 
 namespace clearway {
 
@@ -23,21 +23,17 @@ class PreprocessorProcess {
  private:
   void OnLidarPoints(const lidar_points_t& message);
   void OnOdometry(const odometry_t& message);
-  void EmitDueScans();
   void ProcessScan(const core::AssembledScan& scan);
   void Refresh();
   [[nodiscard]] process::State CurrentState() const;
 
   core::VehicleConfig vehicle_;
   process::Node& node_;
-  core::ScanAssembler assembler_;
+  process::ScanInput input_;
   core::Preprocessor preprocessor_;
   core::PoseBuffer odometry_;
   std::set<std::string> unknown_sensors_;
-  std::optional<process::Runtime::TimerId> deadline_;
   std::optional<core::PreprocessedScan> last_;  // Without its points.
-  std::int64_t scans_ = 0;
-  std::int64_t incomplete_scans_ = 0;
 };
 
 }  // namespace clearway

@@ -31,9 +31,8 @@ StopGuardProcess::StopGuardProcess(const core::StopGuardConfig& config,
     : vehicle_(vehicle), node_(node), guard_(config, vehicle) {
   process::Runtime& runtime = node_.runtime();
   node_.Subscribe<lidar_points_t>(kLidarPoints, [this](const auto& m) { OnLidarPoints(m); });
-  node_.Subscribe<detections_t>(kDetections, [this, &runtime](const auto&) {
-    guard_.OnDetections(runtime.MonotonicUs());
-  });
+  node_.Subscribe<detections_t>(
+      kDetections, [this, &runtime](const auto&) { guard_.OnDetections(runtime.MonotonicUs()); });
   if (!vehicle_.stationary) {
     node_.Subscribe<odometry_t>(kOdometry, [this, &runtime](const odometry_t& m) {
       guard_.OnOdometry(m.v_mps, m.w_radps, runtime.MonotonicUs());

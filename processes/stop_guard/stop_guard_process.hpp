@@ -24,8 +24,8 @@ class StopGuardProcess {
   core::VehicleConfig vehicle_;
   process::Node& node_;
   core::StopGuard guard_;
-  drive_permit_t last_{};             // As published.
-  std::int64_t slice_scan_id_ = -1;   // Of the newest slice.
+  drive_permit_t last_{};            // As published.
+  std::int64_t slice_scan_id_ = -1;  // Of the newest slice.
   std::int32_t slice_index_ = -1;
   std::int32_t slice_processing_us_ = 0;
   std::int64_t slice_arrival_us_ = -1;

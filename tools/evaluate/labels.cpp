@@ -67,9 +67,7 @@ class BoxReader {
     return Number(name, -kMaxCoordinate_m, kMaxCoordinate_m);
   }
 
-  [[nodiscard]] double Size(const char* name) const {
-    return Number(name, kMinSize_m, kMaxSize_m);
-  }
+  [[nodiscard]] double Size(const char* name) const { return Number(name, kMinSize_m, kMaxSize_m); }
 
   [[nodiscard]] double Number(const char* name, double lowest, double highest) const {
     const std::string allowed =
@@ -161,10 +159,12 @@ Labels ReadObject(const fs::path& file) {
 }
 
 Labels ReadFolder(const fs::path& folder) {
-  Labels labels;
+  std::set<fs::path> files;  // In order, so that of several problems always the same is told.
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const fs::path& file = entry.path();
-    if (file.extension() != ".json") continue;
+    if (entry.path().extension() == ".json") files.insert(entry.path());
+  }
+  Labels labels;
+  for (const fs::path& file : files) {
     const std::string stem = file.stem().string();
     labels.emplace(stem, ReadBoxes({file.native(), stem}, Parse(file)));
   }

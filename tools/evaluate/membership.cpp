@@ -90,7 +90,8 @@ std::vector<std::size_t> SmallestFirst(const std::vector<Region>& regions) {
 }  // namespace
 
 std::vector<std::optional<std::size_t>> DetectionsOfPoints(
-    const core::PointCloud& points, std::span<const core::Detection> detections) {
+    const core::PointCloud& points,
+    std::span<const core::Detection> detections) {
   const std::vector<Region> regions(detections.begin(), detections.end());
   const std::vector<std::size_t> order = SmallestFirst(regions);
   std::vector<std::optional<std::size_t>> owners(points.size());
@@ -105,7 +106,8 @@ std::vector<std::optional<std::size_t>> DetectionsOfPoints(
 }
 
 std::vector<std::vector<std::size_t>> PointsOfDetections(
-    const core::PointCloud& points, std::span<const core::Detection> detections) {
+    const core::PointCloud& points,
+    std::span<const core::Detection> detections) {
   const auto owners = DetectionsOfPoints(points, detections);
   std::vector<std::vector<std::size_t>> members(detections.size());
   for (std::size_t i = 0; i < owners.size(); ++i) {

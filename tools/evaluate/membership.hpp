@@ -22,10 +22,12 @@ inline constexpr double kHullMargin_m = 0.001;
 /// Points that are not finite belong to none. O(points x detections).
 /// @pre Points and detections are in the same frame; hulls are convex and counter-clockwise.
 [[nodiscard]] std::vector<std::optional<std::size_t>> DetectionsOfPoints(
-    const core::PointCloud& points, std::span<const core::Detection> detections);
+    const core::PointCloud& points,
+    std::span<const core::Detection> detections);
 
 /// The points of each detection, as indices, ascending.
 [[nodiscard]] std::vector<std::vector<std::size_t>> PointsOfDetections(
-    const core::PointCloud& points, std::span<const core::Detection> detections);
+    const core::PointCloud& points,
+    std::span<const core::Detection> detections);
 
 }  // namespace clearway::evaluate

@@ -24,7 +24,9 @@ struct Share {
 using Members = std::vector<std::vector<std::size_t>>;
 
 // For each detection its share in the box.
-std::vector<Share> SharesIn(const Box& box, const Scene& scene, const Members& members,
+std::vector<Share> SharesIn(const Box& box,
+                            const Scene& scene,
+                            const Members& members,
                             double tolerance_m) {
   std::vector<Share> shares;
   for (const std::vector<std::size_t>& points : members) {
@@ -49,7 +51,9 @@ double CentreError(const core::Detection& detection, const Box& box) {
   return offset.head<2>().norm();
 }
 
-void CompareWithMatch(const core::Detection& match, const Box& box, ObjectScore& score) {
+ObjectScore CompareWithMatch(const core::Detection& match, const Box& box) {
+  ObjectScore score;
+  score.any_evidence = true;
   score.centre_error_m = CentreError(match, box);
   score.nearest_error_m =
       std::abs(static_cast<double>(match.nearest.norm()) - NearestDistance(box));
@@ -57,6 +61,7 @@ void CompareWithMatch(const core::Detection& match, const Box& box, ObjectScore&
     score.yaw_error_rad =
         QuarterTurnDifference(static_cast<double>(match.rectangle.yaw_rad), Yaw(box));
   }
+  return score;
 }
 
 double Range(const Box& box) {
@@ -67,21 +72,20 @@ ObjectScore ScoreBox(const Box& box,
                      const std::vector<core::Detection>& detections,
                      const std::vector<Share>& shares,
                      double radius_m) {
+  const auto most = std::max_element(
+      shares.begin(), shares.end(), [](Share a, Share b) { return a.inside < b.inside; });
   ObjectScore score;
+  if (most != shares.end() && most->inside > 0) {
+    score = CompareWithMatch(detections[static_cast<std::size_t>(most - shares.begin())], box);
+    score.separated = most->IsAtLeast(kSeparatedShare);
+    for (auto share = shares.begin(); share != shares.end(); ++share) {
+      if (share != most && share->IsAtLeast(kSeparatedShare)) ++score.splits;
+    }
+  }
   score.range_m = Range(box);
   score.within_radius = std::any_of(detections.begin(), detections.end(), [&](const auto& d) {
     return CentreError(d, box) <= radius_m;
   });
-  const auto most = std::max_element(shares.begin(), shares.end(), [](Share a, Share b) {
-    return a.inside < b.inside;
-  });
-  if (most == shares.end() || most->inside == 0) return score;
-  score.any_evidence = true;
-  score.separated = most->IsAtLeast(kSeparatedShare);
-  for (auto share = shares.begin(); share != shares.end(); ++share) {
-    if (share != most && share->IsAtLeast(kSeparatedShare)) ++score.splits;
-  }
-  CompareWithMatch(detections[static_cast<std::size_t>(most - shares.begin())], box, score);
   return score;
 }
 

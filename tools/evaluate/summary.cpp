@@ -36,7 +36,7 @@ std::vector<RangeBin> BinByRange(std::span<const ObjectScore> objects) {
 
 // The values of those objects that have one.
 std::vector<double> Values(std::span<const ObjectScore> objects,
-                           std::optional<double> ObjectScore::* field) {
+                           std::optional<double> ObjectScore::*field) {
   std::vector<double> values;
   for (const ObjectScore& object : objects) {
     if (object.*field) values.push_back(*(object.*field));
@@ -44,14 +44,17 @@ std::vector<double> Values(std::span<const ObjectScore> objects,
   return values;
 }
 
-void AddErrors(std::span<const ObjectScore> objects, Summary& summary) {
+// A summary with the errors only.
+Summary SummariseErrors(std::span<const ObjectScore> objects) {
   constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+  Summary summary;
   const std::vector<double> centre_errors_m = Values(objects, &ObjectScore::centre_error_m);
   summary.centre_error_m = Quantile(centre_errors_m, 0.5);
   summary.centre_error_p99_m = Quantile(centre_errors_m, 0.99);
   summary.nearest_error_m = Quantile(Values(objects, &ObjectScore::nearest_error_m), 0.5);
   const auto yaw_error_rad = Quantile(Values(objects, &ObjectScore::yaw_error_rad), 0.5);
   if (yaw_error_rad) summary.yaw_error_deg = *yaw_error_rad * kDegreesPerRadian;
+  return summary;
 }
 
 }  // namespace
@@ -66,26 +69,27 @@ std::optional<double> Quantile(std::vector<double> values, double q) {
 }
 
 Summary Summarise(std::span<const SceneScore> scenes) {
-  Summary summary;
-  summary.scans = scenes.size();
   std::vector<ObjectScore> objects;
-  std::size_t detections = 0;
-  std::size_t merges = 0;
-  std::size_t splits = 0;
   for (const SceneScore& scene : scenes) {
     objects.insert(objects.end(), scene.objects.begin(), scene.objects.end());
+  }
+  Summary summary = SummariseErrors(objects);
+  summary.recall = BinByRange(objects);
+  summary.scans = scenes.size();
+  summary.objects = objects.size();
+  std::size_t detections = 0;
+  std::size_t merges = 0;
+  for (const SceneScore& scene : scenes) {
     detections += scene.detections;
     merges += scene.merges;
     summary.few_points += scene.few_points;
     summary.out_of_range += scene.out_of_range;
   }
+  std::size_t splits = 0;
   for (const ObjectScore& object : objects) {
     splits += object.splits;
     if (object.within_radius) ++summary.within_radius;
   }
-  summary.objects = objects.size();
-  summary.recall = BinByRange(objects);
-  AddErrors(objects, summary);
   if (summary.scans > 0) {
     summary.detections_per_scan =
         static_cast<double>(detections) / static_cast<double>(summary.scans);

@@ -24,9 +24,9 @@ struct Summary {
   std::vector<RangeBin> recall;  ///< Nearest first; bins without objects are left out.
   std::size_t scans = 0;
   std::size_t objects = 0;
-  std::size_t within_radius = 0;  ///< How many of them.
-  std::size_t few_points = 0;     ///< Boxes that were left out.
-  std::size_t out_of_range = 0;   ///< Boxes that were left out.
+  std::size_t within_radius = 0;              ///< How many of them.
+  std::size_t few_points = 0;                 ///< Boxes that were left out.
+  std::size_t out_of_range = 0;               ///< Boxes that were left out.
   std::optional<double> detections_per_scan;  ///< Mean.
   std::optional<std::size_t> splits;
   std::optional<std::size_t> merges;

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <fstream>
+#include <stdexcept>
+
+#include <CLI/CLI.hpp>
+
+#include "common/graph/options.hpp"
+#include "tools/evaluate/evaluation.hpp"
+#include "tools/evaluate/report.hpp"
+
+namespace clearway::evaluate {
+namespace {
+
+struct Arguments {
+  graph::Options common;
+  EvaluationInput input;
+  ScoreRules rules;
+  std::filesystem::path json;
+};
+
+void AddArguments(CLI::App& app, Arguments& arguments) {
+  graph::AddOptions(app, arguments.common);
+  app.add_option("--log", arguments.input.log, "LCM log with DETECTIONS and OBSTACLE_POINTS")
+      ->required()
+      ->type_name("FILE");
+  app.add_option("--labels",
+                 arguments.input.labels,
+                 "JSON file {\"stem\": [boxes], ...}, or folder with a list of boxes in "
+                 "<stem>.json; frame of the first sensor")
+      ->required()
+      ->type_name("PATH");
+  app.add_option("--input", arguments.input.input, "The recording that was played")
+      ->required()
+      ->type_name("PATH");
+  app.add_option("--json", arguments.json, "Write the figures to this file")->type_name("FILE");
+  app.add_option("--min-points", arguments.rules.min_points, "Leave out boxes with fewer points")
+      ->check(CLI::Range(0, 1'000'000'000))
+      ->capture_default_str();
+  app.add_option("--radius",
+                 arguments.rules.radius_m,
+                 "A centroid this near to a box's centre finds it [m]")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  app.add_option("--tolerance", arguments.rules.tolerance_m, "Boxes are grown by this much [m]")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+}
+
+void WriteFile(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream file(path);
+  file << text;
+  file.close();
+  if (!file) throw std::runtime_error(path.string() + ": cannot write");
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app("Scores the detections of an LCM log against labelled boxes", "clearway-evaluate");
+  Arguments arguments;
+  AddArguments(app, arguments);
+  return graph::GuardedMain(app, arguments.common, argc, argv, [&] {
+    arguments.input.channel_prefix = arguments.common.channel_prefix;
+    const auto config = graph::LoadConfig(arguments.common);
+    if (graph::AnsweredByConfig(arguments.common, config)) return graph::kExitOk;
+    const Evaluation evaluation = Evaluate(arguments.input, config.root, arguments.rules);
+    std::fputs(FormatTable(evaluation).c_str(), stdout);
+    if (!arguments.json.empty()) WriteFile(arguments.json, FormatJson(evaluation));
+    return graph::kExitOk;
+  });
+}
+
+}  // namespace
+}  // namespace clearway::evaluate
+
+int main(int argc, char** argv) {
+  return clearway::evaluate::Main(argc, argv);
+}

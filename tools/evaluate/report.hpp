@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "tools/evaluate/evaluation.hpp"
+
+namespace clearway::evaluate {
+
+/// The table that a person reads.
+[[nodiscard]] std::string FormatTable(const Evaluation& evaluation);
+
+/// The figures with their stable names; what was not measured is absent. any_evidence, separated
+/// and found are numbers of objects, as is `objects`.
+[[nodiscard]] std::string FormatJson(const Evaluation& evaluation);
+
+}  // namespace clearway::evaluate
