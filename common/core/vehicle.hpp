@@ -64,6 +64,8 @@ struct BoxConfig {
 
 /// One sensor and where it is mounted. XML element: <vehicle><sensor>.
 struct SensorConfig {
+  static constexpr std::size_t kMaxNameLength = 64;  ///< It travels in every slice.
+
   std::string name = "front";
   double x_m = 0.2;
   double y_m = 0.0;
@@ -116,7 +118,10 @@ struct SensorConfig {
 
   [[nodiscard]] std::vector<std::string> Validate() const {
     std::vector<std::string> broken;
-    if (name.empty()) broken.emplace_back("a sensor needs a name");
+    if (name.empty() || name.size() > kMaxNameLength) {
+      broken.push_back("a sensor needs a name of 1 to " + std::to_string(kMaxNameLength) +
+                       " characters");
+    }
     if (!(min_range_m < max_range_m)) {
       broken.emplace_back("min_range_m must be less than max_range_m");
     }

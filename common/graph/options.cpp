@@ -33,7 +33,8 @@ void AddOptions(CLI::App& app, Options& options) {
   app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}));
   app.add_flag("--check-config", options.check_config, "Check the configuration and stop");
-  app.add_flag("--print-config", options.print_config, "Print the effective configuration and stop");
+  app.add_flag(
+      "--print-config", options.print_config, "Print the effective configuration and stop");
 }
 
 config::LoadResult<GraphConfig> LoadConfig(const Options& options) {

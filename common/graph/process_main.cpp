@@ -22,9 +22,8 @@ int ProcessMain(int argc, char** argv, const ProcessInfo& info, const MakeProces
     if (AnsweredByConfig(options, config)) return kExitOk;
 
     process::LiveRuntime runtime(config.root.buses, options.channel_prefix);
-    process::Node node(runtime,
-                       {info.name, CLEARWAY_VERSION, config::Digest(config.root)},
-                       info.status_channel);
+    process::Node node(
+        runtime, {info.name, CLEARWAY_VERSION, config::Digest(config.root)}, info.status_channel);
     const std::shared_ptr<void> process = make(config.root, node);
     process::LogInfo("started, configuration " + config::Digest(config.root));
     runtime.Run();

@@ -19,7 +19,9 @@ struct LogEvent {
   std::vector<std::byte> bytes;
 };
 
-/// Reads an LCM log from front to end.
+/// Reads an LCM log from front to end. Damage costs the events that it hits: the reader looks for
+/// the next event's sync word and goes on (LCM's own library ends the log at the first damage that
+/// follows an event, with that event). O(1) memory besides the event.
 class LcmLogReader {
  public:
   /// Throws ReadError when the file cannot be opened.
@@ -28,8 +30,8 @@ class LcmLogReader {
   LcmLogReader(const LcmLogReader&) = delete;
   LcmLogReader& operator=(const LcmLogReader&) = delete;
 
-  /// The next event; nothing at the end of the file. An event that was cut short by a crash of the
-  /// logger ends the log, as LCM's own tools have it.
+  /// The next whole event; nothing at the end of the file. What was cut short by a crash of the
+  /// logger is left out. No content of the file is an error.
   [[nodiscard]] std::optional<LogEvent> Next();
 
  private:

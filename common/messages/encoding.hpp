@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -11,11 +12,13 @@ namespace clearway::messages {
 /// Longer messages are not decoded. Far above what any bus carries.
 inline constexpr std::size_t kMaxMessageBytes = std::size_t{64} << 20;
 
-/// The bytes of a message as they travel.
+/// The bytes of a message as they travel. A string with a NUL inside ends there.
 template <typename Message>
 [[nodiscard]] std::vector<std::byte> Encode(const Message& message) {
   std::vector<std::byte> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  // On the wire a string ends at its first NUL; getEncodedSize() counts what lies behind it, too.
+  const int written = message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(std::max(written, 0)));
   return bytes;
 }
 

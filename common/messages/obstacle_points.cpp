@@ -9,7 +9,9 @@ namespace {
 constexpr std::size_t kHeaderBytes = 256;
 constexpr std::size_t kBytesPerPoint = 3 * sizeof(float) + 2;
 
-std::int32_t Int32(std::size_t value) { return static_cast<std::int32_t>(value); }
+std::int32_t Int32(std::size_t value) {
+  return static_cast<std::int32_t>(value);
+}
 
 // All that the slices of a scan have in common.
 obstacle_points_t HeaderOf(const core::PreprocessedScan& scan, std::int64_t processing_us) {

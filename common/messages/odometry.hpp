@@ -6,7 +6,8 @@
 
 namespace clearway::messages {
 
-/// The pose of an ODOMETRY message. A quaternion of length zero gives NaN, which PoseBuffer refuses.
+/// The pose of an ODOMETRY message. A quaternion of length zero gives NaN, which PoseBuffer
+/// refuses.
 [[nodiscard]] inline Eigen::Isometry3d T_odom_vehicle(const odometry_t& message) {
   const Eigen::Quaterniond orientation(message.orientation[0],
                                        message.orientation[1],

@@ -79,10 +79,15 @@ void LiveRuntime::Run() {
 }
 
 void LiveRuntime::RunFor(std::int64_t duration_us) {
+  // Cancelled also when an exception leaves: it must not end a later Run().
+  struct StopTimer {
+    LiveRuntime& runtime;
+    TimerId id;
+    ~StopTimer() { runtime.Cancel(id); }
+  };
   stop_ = false;
-  const TimerId timer = After(duration_us, [this] { Stop(); });
+  const StopTimer timer{*this, After(duration_us, [this] { Stop(); })};
   Run();
-  Cancel(timer);
 }
 
 void LiveRuntime::WaitForEvents(std::vector<bool>& readable) {

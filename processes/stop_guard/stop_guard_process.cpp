@@ -51,6 +51,7 @@ void StopGuardProcess::OnLidarPoints(const lidar_points_t& message) {
   const core::Permit permit = guard_.PermitAt(begin_us);
   const std::int64_t duration_us = node_.runtime().MonotonicUs() - begin_us;
   node_.AddProcessingTime(duration_us);
+  slice_sensor_ = message.sensor;
   slice_scan_id_ = message.scan_id;
   slice_index_ = message.slice_index;
   slice_processing_us_ = static_cast<std::int32_t>(duration_us);
@@ -68,6 +69,7 @@ void StopGuardProcess::PublishPermit(const core::Permit& permit) {
   if (permit.sensor >= 0) {
     message.text += ": " + vehicle_.sensors[static_cast<std::size_t>(permit.sensor)].name;
   }
+  message.slice_sensor = slice_sensor_;
   message.slice_scan_id = slice_scan_id_;
   message.slice_index = slice_index_;
   message.input_age_us = slice_arrival_us_ < 0 ? -1 : now_us - slice_arrival_us_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "common/core/guard/stop_guard.hpp"
 #include "common/core/vehicle.hpp"
@@ -24,8 +25,9 @@ class StopGuardProcess {
   core::VehicleConfig vehicle_;
   process::Node& node_;
   core::StopGuard guard_;
-  drive_permit_t last_{};            // As published.
-  std::int64_t slice_scan_id_ = -1;  // Of the newest slice.
+  drive_permit_t last_{};     // As published.
+  std::string slice_sensor_;  // Of the newest slice; so are the following.
+  std::int64_t slice_scan_id_ = -1;
   std::int32_t slice_index_ = -1;
   std::int32_t slice_processing_us_ = 0;
   std::int64_t slice_arrival_us_ = -1;

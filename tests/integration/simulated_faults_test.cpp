@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <ostream>
 #include <random>
 #include <set>
 
@@ -85,18 +86,32 @@ std::map<std::int64_t, ScanOnTheWire> ScansOnTheWire(const SimulatedGraph& graph
 struct WireCase {
   std::string name;
   BadWire::Odds odds;
+
+  friend void PrintTo(const WireCase& wire, std::ostream* out) { *out << wire.name; }
 };
 
+// A whole run behind one wire.
+struct WireRun {
+  explicit WireRun(const WireCase& wire_case) : wire(20240607, wire_case.odds) {
+    static ListedScans scans(ReadAll(*FreeRoom(12.0)));
+    graph.Play(scans, std::ref(wire));
+    graph.RunToTheEnd();
+  }
+  BadWire wire;
+  SimulatedGraph graph{LabConfig()};
+};
+
+// All tests of one wire look at the same run.
 class BadWireTest : public testing::TestWithParam<WireCase> {
  protected:
-  BadWireTest() {
-    graph_.Play(*room_, std::ref(wire_));
-    graph_.RunToTheEnd();
+  static WireRun& Run() {
+    static std::map<std::string, std::unique_ptr<WireRun>> runs;
+    std::unique_ptr<WireRun>& run = runs[GetParam().name];
+    if (!run) run = std::make_unique<WireRun>(GetParam());
+    return *run;
   }
-
-  std::unique_ptr<play::ScanSource> room_ = FreeRoom(12.0);
-  BadWire wire_{20240607, GetParam().odds};
-  SimulatedGraph graph_{LabConfig()};
+  BadWire& wire_ = Run().wire;
+  SimulatedGraph& graph_ = Run().graph;
 };
 
 TEST_P(BadWireTest, EachScanComesOutOnceInOrderAndTellsWhatWasMissing) {
@@ -205,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(
                     WireCase{"Delaying", {.late = 0.05}},
                     WireCase{"DoingAllOfIt",
                              {.lost = 0.03, .repeated = 0.05, .overtaken = 0.1, .late = 0.02}}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& test) { return test.param.name; });
 
 TEST(ForeignPublisherTest, ASecondPublisherOfOneSensorIsReportedAndStopsTheVehicle) {
   const auto first = FreeRoom(20.0);
@@ -216,14 +231,14 @@ TEST(ForeignPublisherTest, ASecondPublisherOfOneSensorIsReportedAndStopsTheVehic
 
   graph.Play(*first);
   graph.RunFor(2 * kSecond + 4'321);  // So that the two take turns.
-  const std::int64_t invalid_before = graph.FreshStatus(channels::kStopGuardStatus).foreign;
+  const std::int64_t foreign_before = graph.FreshStatus(channels::kStopGuardStatus).foreign;
   graph.Play(*second, [&](auto) {
     return graph.now_us() < second_until_us ? RelayRuntime::Deliveries{0}
                                             : RelayRuntime::Deliveries{};
   });
   graph.RunFor(12 * kSecond);
 
-  EXPECT_EQ(invalid_before, 0);
+  EXPECT_EQ(foreign_before, 0);
   EXPECT_GT(graph.FreshStatus(channels::kStopGuardStatus).foreign, 0);
   const status_t preprocessor = graph.FreshStatus(channels::kPreprocessorStatus);
   EXPECT_GT(preprocessor.foreign, 0);
@@ -241,10 +256,11 @@ TEST(ForeignPublisherTest, ASecondPublisherOfOneSensorIsReportedAndStopsTheVehic
 
 // Everything but status, and what was put in on purpose.
 std::vector<TappedMessage> WorkOf(const SimulatedGraph& graph,
-                                  const std::set<std::vector<std::byte>>& put_in = {}) {
+                                  const std::vector<std::vector<std::byte>>& put_in = {}) {
   std::vector<TappedMessage> work;
   for (const TappedMessage& message : graph.tapped()) {
-    if (message.channel.ends_with("_STATUS") || put_in.contains(message.bytes)) continue;
+    if (message.channel.ends_with("_STATUS")) continue;
+    if (std::find(put_in.begin(), put_in.end(), message.bytes) != put_in.end()) continue;
     work.push_back(message);
   }
   return work;
@@ -343,20 +359,19 @@ TEST(GarbageTest, BytesThatDoNotDecodeAreCountedAsInvalidAndChangeNothingElse) {
     SCOPED_TRACE(garbage.channel);
     const auto room = FreeRoom(1.0);
     SimulatedGraph graph(LabConfig());
-    std::set<std::vector<std::byte>> put_in;
+    std::vector<std::vector<std::byte>> put_in;
 
     graph.Play(*room);
     for (const std::vector<std::byte>& bytes : GarbageLike(garbage.good)) {
-      graph.RunFor(50'000);
+      graph.RunFor(100'000);
       graph.runtime().Publish(garbage.bus, garbage.channel, bytes);
-      put_in.insert(bytes);
+      put_in.push_back(bytes);
     }
     graph.RunToTheEnd();
 
     ExpectSameWork(WorkOf(graph, put_in), expected);
-    for (const auto& channel : {channels::kPreprocessorStatus,
-                                channels::kClustererStatus,
-                                channels::kStopGuardStatus}) {
+    for (const auto& channel :
+         {channels::kPreprocessorStatus, channels::kClustererStatus, channels::kStopGuardStatus}) {
       const bool listens = std::any_of(
           garbage.listeners.begin(), garbage.listeners.end(), [&](const auto& listener) {
             return std::string(listener.name) == channel.name;
@@ -387,7 +402,9 @@ TEST(GarbageTest, OdometryThatDoesNotDecodeOrIsNoPoseIsCountedAsInvalid) {
 
   const auto count = static_cast<std::int64_t>(garbage.size());
   EXPECT_EQ(graph.FreshStatus(channels::kPreprocessorStatus).invalid, count + 1);
-  EXPECT_EQ(graph.FreshStatus(channels::kStopGuardStatus).invalid, count);
+  // One of them decodes, to NaN: the type has no length that could be wrong.
+  const status_t guard = graph.FreshStatus(channels::kStopGuardStatus);
+  EXPECT_EQ(guard.invalid + CounterOf(guard, "odometry_invalid"), count);
 }
 
 // Messages that decode, but whose fields no sender can mean.
@@ -409,11 +426,11 @@ TEST(GarbageTest, SlicesWithImpossibleFieldsAreCountedAndChangeNoDetection) {
   graph.Play(*room);
   graph.RunFor(300'000);
   lidar_points_t slice = graph.On(channels::kLidarPoints).back().message;
-  std::set<std::vector<std::byte>> put_in;
+  std::vector<std::vector<std::byte>> put_in;
   for (const auto& break_it : defects) {
     lidar_points_t broken = slice;
     break_it(broken);
-    put_in.insert(messages::Encode(broken));
+    put_in.push_back(messages::Encode(broken));
     graph.runtime().Publish(
         channels::kLidarPoints.bus, channels::kLidarPoints.name, messages::Encode(broken));
   }

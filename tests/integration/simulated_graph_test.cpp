@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The whole graph in virtual time: what goes in comes out, of every stage, always the same.
+#include "tests/support/simulated_graph.hpp"
+
 #include <cmath>
 #include <limits>
 #include <map>
@@ -9,7 +11,6 @@
 #include <gtest/gtest.h>
 
 #include "common/config/config.hpp"
-#include "tests/support/simulated_graph.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace clearway::test {
@@ -48,9 +49,8 @@ void ExpectEveryScanThroughEveryStage(SimulatedGraph& graph, std::size_t num_sca
   ExpectWholeScans(graph, channels::kObstaclePoints);
   ExpectWholeScans(graph, channels::kDetections);
   EXPECT_EQ(graph.On(channels::kFloor).size(), num_scans);
-  for (const auto& channel : {channels::kPreprocessorStatus,
-                              channels::kClustererStatus,
-                              channels::kStopGuardStatus}) {
+  for (const auto& channel :
+       {channels::kPreprocessorStatus, channels::kClustererStatus, channels::kStopGuardStatus}) {
     const status_t status = graph.FreshStatus(channel);
     EXPECT_EQ(status.missing, 0) << channel.name;
     EXPECT_EQ(status.invalid, 0) << channel.name;
@@ -60,8 +60,7 @@ void ExpectEveryScanThroughEveryStage(SimulatedGraph& graph, std::size_t num_sca
 }
 
 TEST(SimulatedGraphTest, EveryScanOfTheLabGoesThroughEveryStage) {
-  const auto lab =
-      play::OpenSource(SourceFolder() / "config" / "lab_scene.xml", LabConfig(), 3.0);
+  const auto lab = play::OpenSource(SourceFolder() / "config" / "lab_scene.xml", LabConfig(), 3.0);
   SimulatedGraph graph(LabConfig());
 
   graph.Play(*lab);
@@ -133,7 +132,7 @@ TEST(SimulatedGraphTest, EveryScanOfIndoorPeopleGoesThroughEveryStage) {
 }
 
 TEST(SimulatedGraphTest, SlicesOfDetectionsTogetherHoldEveryCluster) {
-  // Arrange: as many separate posts as need several messages of the least size.
+  // Arrange: as many separate things, well above the floor, as need several small messages.
   core::PointCloud cloud;
   constexpr int kRows = 12;
   constexpr int kColumns = 12;
@@ -142,7 +141,7 @@ TEST(SimulatedGraphTest, SlicesOfDetectionsTogetherHoldEveryCluster) {
       for (int k = 0; k < 8; ++k) {
         cloud.Add({1.0F + 0.6F * static_cast<float>(row),
                    -3.3F + 0.6F * static_cast<float>(column),
-                   -0.2F + 0.06F * static_cast<float>(k)});
+                   0.25F + 0.06F * static_cast<float>(k)});
       }
     }
   }
@@ -170,8 +169,7 @@ TEST(SimulatedGraphTest, SlicesOfDetectionsTogetherHoldEveryCluster) {
 }
 
 std::vector<TappedMessage> PlayTheLab() {
-  const auto lab =
-      play::OpenSource(SourceFolder() / "config" / "lab_scene.xml", LabConfig(), 1.0);
+  const auto lab = play::OpenSource(SourceFolder() / "config" / "lab_scene.xml", LabConfig(), 1.0);
   SimulatedGraph graph(LabConfig());
   graph.Play(*lab);
   graph.RunToTheEnd();

@@ -52,8 +52,7 @@ TEST(SilenceTest, WhenLidarPointsStopThePermitIsZeroWithinItsLimitAndOnePeriod) 
     const std::int64_t last_slice_us = graph.On(channels::kLidarPoints).back().time_us;
     const auto before = PermitsAfter(graph, last_slice_us - kSilenceLimit_us);
     EXPECT_EQ(before.front().message.reason, drive_permit_t::REASON_FREE);
-    const auto after =
-        PermitsAfter(graph, last_slice_us + kSilenceLimit_us + kPermitPeriod_us);
+    const auto after = PermitsAfter(graph, last_slice_us + kSilenceLimit_us + kPermitPeriod_us);
     ASSERT_FALSE(after.empty());
     for (const auto& permit : after) {
       EXPECT_TRUE(IsStop(permit.message));
@@ -82,9 +81,9 @@ TEST(SilenceTest, AWireThatIsLateByMoreThanItsLimitMeansStopForAsLongAsItIs) {
         permit.time_us > late_from_us + kSilenceLimit_us && permit.time_us < late_until_us;
     if (!must_stop) continue;
     EXPECT_TRUE(IsStop(permit.message));
-    EXPECT_THAT(permit.message.reason,
-                testing::AnyOf(drive_permit_t::REASON_SENSOR_SILENT,
-                               drive_permit_t::REASON_SLICES_LATE));
+    EXPECT_THAT(
+        permit.message.reason,
+        testing::AnyOf(drive_permit_t::REASON_SENSOR_SILENT, drive_permit_t::REASON_SLICES_LATE));
   }
   const auto late = std::count_if(all.begin(), all.end(), [](const auto& permit) {
     return permit.message.reason == drive_permit_t::REASON_SLICES_LATE;
@@ -94,8 +93,8 @@ TEST(SilenceTest, AWireThatIsLateByMoreThanItsLimitMeansStopForAsLongAsItIs) {
 }
 
 TEST(SilenceTest, WithoutDetectionsTheSpeedIsCappedAndPathAGoesOn) {
-  for (const SimulatedGraph::Parts& parts : {SimulatedGraph::Parts{.preprocessor = false},
-                                             SimulatedGraph::Parts{.clusterer = false}}) {
+  for (const SimulatedGraph::Parts& parts :
+       {SimulatedGraph::Parts{.preprocessor = false}, SimulatedGraph::Parts{.clusterer = false}}) {
     const auto room = FreeRoom(2.0);
     const graph::GraphConfig config = LabConfig();
     SimulatedGraph graph(config, parts);

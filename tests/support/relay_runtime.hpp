@@ -35,10 +35,9 @@ class RelayRuntime final : public process::Runtime {
         inner_.Publish(bus, channel, bytes);
         continue;
       }
-      inner_.After(delay_us,
-                   [this, bus, channel, copy = std::vector(bytes.begin(), bytes.end())] {
-                     inner_.Publish(bus, channel, copy);
-                   });
+      inner_.After(delay_us, [this, bus, channel, copy = std::vector(bytes.begin(), bytes.end())] {
+        inner_.Publish(bus, channel, copy);
+      });
     }
   }
 

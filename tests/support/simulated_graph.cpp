@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/config/config.hpp"
+#include "common/process/log.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace clearway::test {
@@ -42,6 +43,7 @@ SimulatedGraph::SimulatedGraph(const graph::GraphConfig& config)
 
 SimulatedGraph::SimulatedGraph(const graph::GraphConfig& config, const Parts& parts)
     : runtime_(kStart, LimitsOf(config)) {
+  process::SetUpLog("test", "off");  // The tests look at STATUS.
   runtime_.SetTap(
       [this](messages::BusId, const std::string& channel, std::span<const std::byte> bytes) {
         tapped_.push_back({runtime_.MonotonicUs(), channel, {bytes.begin(), bytes.end()}});
@@ -76,10 +78,8 @@ void SimulatedGraph::Play(play::ScanSource& source, RelayRuntime::Decide wire) {
       std::make_unique<RelayRuntime>(runtime_, channels::kLidarPoints.name, std::move(wire));
   playing.node = std::make_unique<process::Node>(
       *playing.relay, process::Identity{"play", "test", "digest"}, channels::kPlayStatus);
-  playing.player = std::make_unique<play::Player>(*playing.node,
-                                                  source,
-                                                  play::PlayerSettings{.sensor = "front"},
-                                                  [this] { ++num_done_; });
+  playing.player = std::make_unique<play::Player>(
+      *playing.node, source, play::PlayerSettings{.sensor = "front"}, [this] { ++num_done_; });
   players_.push_back(std::move(playing));
 }
 

@@ -18,9 +18,9 @@ inline std::filesystem::path SourceFolder() {
 /// beside the checkout. Nothing when it is not there: the test then skips itself and says so.
 inline std::optional<std::filesystem::path> TestData(const std::string& relative) {
   const char* configured = std::getenv("CLEARWAY_TEST_DATA");
-  const std::filesystem::path root =
-      configured != nullptr ? std::filesystem::path(configured)
-                            : SourceFolder().parent_path() / "shared" / "data";
+  const std::filesystem::path root = configured != nullptr
+                                         ? std::filesystem::path(configured)
+                                         : SourceFolder().parent_path() / "shared" / "data";
   const std::filesystem::path path = root / relative;
   if (!std::filesystem::exists(path)) return std::nullopt;
   return path;

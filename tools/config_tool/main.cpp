@@ -6,8 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/core/simulation/scene.hpp"
 #include "common/graph/options.hpp"
+#include "tools/config_tool/generated_files.hpp"
 
 namespace clearway {
 namespace {
@@ -43,16 +43,14 @@ int Main(int argc, char** argv) {
     return app.exit(error) == 0 ? graph::kExitOk : graph::kExitUsage;
   }
   if (*check) return Check(files);
-  if (*defaults) std::fputs(config::ToXml(graph::GraphConfig{}, {.with_help = true}).c_str(), stdout);
-  if (*reference) {
-    std::printf("# Reference of the configuration\n\n%s\n# Reference of scene files\n\n%s",
-                config::Reference(graph::GraphConfig{}).c_str(),
-                config::Reference(core::SceneFile{}).c_str());
-  }
+  if (*defaults) std::fputs(config_tool::DefaultXml().c_str(), stdout);
+  if (*reference) std::fputs(config_tool::ReferenceMarkdown().c_str(), stdout);
   return graph::kExitOk;
 }
 
 }  // namespace
 }  // namespace clearway
 
-int main(int argc, char** argv) { return clearway::Main(argc, argv); }
+int main(int argc, char** argv) {
+  return clearway::Main(argc, argv);
+}

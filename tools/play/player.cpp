@@ -46,8 +46,10 @@ std::int64_t Player::StampOf(std::size_t scan) const {
 }
 
 void Player::BeginNextScan() {
+  // Without this, a loop over nothing but unreadable scans would never return.
+  const std::size_t unreadable_pass = next_scan_ + source_.size();
   do {
-    if (next_scan_ >= source_.size() && !settings_.loop) {
+    if (next_scan_ >= (settings_.loop ? unreadable_pass : source_.size())) {
       ReportState(status_t::STATE_DONE);
       on_done_();
       return;
@@ -70,6 +72,10 @@ void Player::LoadScan() {
          .utime_end = utime + source_.period_us(),
          .cloud_sensor = std::move(scan.cloud_sensor)},
         CutFor(node_.runtime().MaxMessageBytes(kLidarPoints.bus), source_.period_us()));
+    if (slices_.size() > static_cast<std::size_t>(core::kMaxSlices)) {
+      slices_.clear();
+      throw io::ReadError(scan.name + ": too many points for slices of max_message_bytes");
+    }
   } catch (const io::ReadError& error) {
     process::LogError(error.what());
     ++progress_.unreadable;

@@ -33,8 +33,8 @@ class ScanSource {
 };
 
 /// The recording at `input` (see io::CloudSource), or, for a scene file (.xml), what the first
-/// sensor of the configuration sees of it during `scene_s` seconds while the vehicle stands where the
-/// scene starts. Throws io::ReadError or config::ConfigError.
+/// sensor of the configuration sees of it during `scene_s` seconds while the vehicle stands where
+/// the scene starts. Throws io::ReadError or config::ConfigError.
 [[nodiscard]] std::unique_ptr<ScanSource> OpenSource(const std::filesystem::path& input,
                                                      const graph::GraphConfig& config,
                                                      double scene_s);

@@ -39,14 +39,26 @@ ScanRecord& RunStatistics::Record(ScanKey key) {
   return record;
 }
 
+bool RunStatistics::IsWhole(const Arrivals& arrivals) {
+  return std::all_of(arrivals.by_sensor.begin(), arrivals.by_sensor.end(), [](const auto& sensor) {
+    return static_cast<std::int64_t>(sensor.second.seen.size()) == sensor.second.count;
+  });
+}
+
 void RunStatistics::OnLidarPoints(const lidar_points_t& message, std::int64_t arrival_us) {
   last_input_us_ = arrival_us;
   Arrivals& arrivals = arrivals_[message.scan_utime];
   arrivals.last_slice_us = arrival_us;
-  if (++arrivals.slices_seen[message.sensor] == message.slice_count) {
+  SensorSlices& slices = arrivals.by_sensor[message.sensor];
+  slices.seen.insert(message.slice_index);
+  slices.count = message.slice_count;
+  if (IsWhole(arrivals)) {
     played_.insert(message.scan_utime);
+  } else {
+    played_.erase(message.scan_utime);
   }
-  waiting_.push_back({message.scan_id, message.slice_index, arrival_us});
+  waiting_.push_back(
+      {message.sensor, message.scan_id, message.slice_index, message.scan_utime, arrival_us});
   if (waiting_.size() > kMaxWaitingSlices) waiting_.pop_front();
   Record(message.scan_utime).raw.push_back(message);
 }
@@ -76,13 +88,15 @@ void RunStatistics::OnFloor(const floor_t& message) {
 void RunStatistics::OnDetections(const detections_t& message, std::int64_t arrival_us) {
   const ScanKey key = message.scan_utime;
   Record(key).detections.push_back(message);
-  sum_detections_ += message.n;
   if (message.slice_index == 0) {
     processing_ms_["clusterer"].push_back(Milliseconds(message.processing_us));
     if (message.scan_state == detections_t::SCAN_INCOMPLETE) ++incomplete_;
   }
-  if (++detection_slices_[key] != message.slice_count) return;
+  DetectionSlices& slices = detection_slices_[key];
+  slices.detections += message.n;
+  if (++slices.count != message.slice_count) return;
   detected_.insert(key);
+  sum_detections_ += static_cast<double>(slices.detections);
   last_detected_ = key;
   const auto arrivals = arrivals_.find(key);
   if (arrivals == arrivals_.end()) return;
@@ -90,18 +104,20 @@ void RunStatistics::OnDetections(const detections_t& message, std::int64_t arriv
 }
 
 void RunStatistics::OnDrivePermit(const drive_permit_t& message, std::int64_t arrival_us) {
-  const bool is_new = !last_permit_ || last_permit_->slice_scan_id != message.slice_scan_id ||
+  const bool is_new = !last_permit_ || last_permit_->slice_sensor != message.slice_sensor ||
+                      last_permit_->slice_scan_id != message.slice_scan_id ||
                       last_permit_->slice_index != message.slice_index;
   last_permit_ = message;
   if (!is_new || message.slice_scan_id < 0) return;
   processing_ms_["stop_guard"].push_back(Milliseconds(message.processing_us));
-  guarded_scans_.insert(message.slice_scan_id);
   // The permit answers this slice and all that came before it.
   const auto answered =
       std::find_if(waiting_.begin(), waiting_.end(), [&message](const WaitingSlice& slice) {
-        return slice.scan_id == message.slice_scan_id && slice.slice_index == message.slice_index;
+        return slice.sensor == message.slice_sensor && slice.scan_id == message.slice_scan_id &&
+               slice.slice_index == message.slice_index;
       });
   if (answered == waiting_.end()) return;
+  guarded_scans_.insert(answered->scan);
   for (auto slice = waiting_.begin(); slice != std::next(answered); ++slice) {
     slice_to_permit_ms_.push_back(Milliseconds(arrival_us - slice->arrival_us));
   }

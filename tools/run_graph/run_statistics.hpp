@@ -44,7 +44,7 @@ struct StageSummary {
 
 /// What a run came to. What was not measured is absent.
 struct RunSummary {
-  std::size_t scans_played = 0;      ///< Scans of which every slice was seen on LIDAR_POINTS.
+  std::size_t scans_played = 0;      ///< Scans of which every slice of every sensor was seen.
   std::size_t scans_detected = 0;    ///< Of them, with all of their DETECTIONS.
   std::size_t scans_incomplete = 0;  ///< DETECTIONS that say that points were missing.
   std::int64_t messages_lost = 0;    ///< Gaps that the processes of the graph counted.
@@ -87,24 +87,36 @@ class RunStatistics {
  private:
   // A sender that starts anew counts its scans from 0 again: a scan is known by its stamp.
   using ScanKey = std::int64_t;
+  struct SensorSlices {
+    std::set<std::int32_t> seen;
+    std::int32_t count = 0;  // Of the whole scan.
+  };
   struct Arrivals {
-    std::map<std::string, int> slices_seen;  // By sensor.
+    std::map<std::string, SensorSlices> by_sensor;
     std::int64_t last_slice_us = 0;
   };
   struct WaitingSlice {
+    std::string sensor;
     std::int64_t scan_id;
     std::int32_t slice_index;
+    ScanKey scan;
     std::int64_t arrival_us;
   };
 
+  struct DetectionSlices {
+    int count = 0;
+    std::int64_t detections = 0;
+  };
+
+  [[nodiscard]] static bool IsWhole(const Arrivals& arrivals);
   ScanRecord& Record(ScanKey key);
 
   std::map<ScanKey, Arrivals> arrivals_;
   std::map<ScanKey, ScanRecord> recent_;
-  std::map<ScanKey, int> detection_slices_;
+  std::map<ScanKey, DetectionSlices> detection_slices_;
   std::set<ScanKey> played_;
   std::set<ScanKey> detected_;
-  std::set<std::int64_t> guarded_scans_;
+  std::set<ScanKey> guarded_scans_;
   std::optional<ScanKey> last_detected_;
   std::deque<WaitingSlice> waiting_;
   std::map<std::string, status_t> statuses_;

@@ -42,6 +42,17 @@ TEST(EncodingTest, ADecodedMessageEncodesToTheSameBytes) {
   EXPECT_EQ(Encode(*decoded), bytes);
 }
 
+TEST(EncodingTest, AStringWithANulInsideEndsThereAndTheMessageStaysWhole) {
+  status_t message = SomeStatus();
+  message.text = std::string("works\0not", 9);
+
+  const auto decoded = Decode<status_t>(Encode(message));
+
+  ASSERT_TRUE(decoded.has_value());
+  EXPECT_EQ(decoded->text, "works");
+  EXPECT_EQ(decoded->n, message.n);
+}
+
 TEST(EncodingTest, RefusesAnotherTypesMessageAndLeftOverBytes) {
   auto bytes = Encode(SomePoints());
 

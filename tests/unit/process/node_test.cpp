@@ -36,8 +36,7 @@ class NodeTest : public testing::Test {
     drive_request_t request{};
     request.session = session;
     request.sequence = sequence;
-    runtime_.Publish(
-        kDriveRequest.bus, kDriveRequest.name, messages::Encode(request));
+    runtime_.Publish(kDriveRequest.bus, kDriveRequest.name, messages::Encode(request));
     runtime_.RunUntil(runtime_.MonotonicUs() + 1000);
   }
 
@@ -79,9 +78,9 @@ TEST_F(NodeTest, CountsGapsUndecodableMessagesAndASecondPublisher) {
   node_.Subscribe<drive_request_t>(kDriveRequest, [&](const auto&) { ++handled; });
 
   PublishFrom(7, 0);
-  PublishFrom(7, 3);   // 1 and 2 never came.
-  PublishFrom(8, 0);   // Another session: a restart...
-  PublishFrom(7, 4);   // ...but the first one is still there.
+  PublishFrom(7, 3);  // 1 and 2 never came.
+  PublishFrom(8, 0);  // Another session: a restart...
+  PublishFrom(7, 4);  // ...but the first one is still there.
   runtime_.Publish(kDriveRequest.bus, kDriveRequest.name, messages::Encode(floor_t{}));
   const status_t& status = StatusAfterOneSecond();
 

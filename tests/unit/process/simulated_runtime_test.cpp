@@ -15,7 +15,9 @@ using testing::ElementsAre;
 
 constexpr std::int64_t kStart = 1'000'000;
 
-std::span<const std::byte> Bytes(const int& value) { return std::as_bytes(std::span(&value, 1)); }
+std::span<const std::byte> Bytes(const int& value) {
+  return std::as_bytes(std::span(&value, 1));
+}
 
 int Value(std::span<const std::byte> bytes) {
   int value = 0;

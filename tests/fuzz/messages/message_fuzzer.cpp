@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Any bytes as a message of any type of the graph: refused, or decoded, converted and judged.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+
+#include "common/core/geometry/pose_buffer.hpp"
+#include "common/messages/channels.hpp"
+#include "common/messages/encoding.hpp"
+#include "common/messages/lidar_points.hpp"
+#include "common/messages/obstacle_points.hpp"
+#include "common/messages/odometry.hpp"
+
+namespace clearway {
+namespace {
+
+void Require(bool holds) {
+  if (!holds) std::abort();
+}
+
+// What every array must hold for the core to take a slice.
+void RequireEqualArrays(const core::PointCloud& cloud) {
+  const std::size_t points = cloud.size();
+  Require(cloud.y.size() == points && cloud.z.size() == points);
+  Require(cloud.intensity.size() == points && cloud.tag.size() == points);
+  Require(cloud.time_offset_us.size() == points);
+}
+
+template <typename Message>
+void Use(const Message&) {}
+
+void Use(const lidar_points_t& message) {
+  const core::Slice slice = messages::FromLcm(message, 0);
+  if (!core::IsValid(slice)) return;
+  RequireEqualArrays(slice.cloud_sensor);
+  const core::Slice again = messages::FromLcm(messages::ToLcm(slice, message.sensor), 0);
+  Require(again.shots == slice.shots && again.zero_returns == slice.zero_returns);
+}
+
+void Use(const obstacle_points_t& message) {
+  RequireEqualArrays(messages::FromLcm(message).cloud_sensor);
+}
+
+void Use(const odometry_t& message) {
+  core::PoseBuffer buffer;
+  if (buffer.Add(message.utime, messages::T_odom_vehicle(message)) ==
+      core::PoseBuffer::Outcome::kAdded) {
+    Require(buffer.Lookup(message.utime).has_value());
+  }
+}
+
+// A decoded message can travel again, and is no longer then (its strings end at a NUL).
+template <typename Message>
+void Take(std::span<const std::byte> bytes) {
+  const auto message = messages::Decode<Message>(bytes);
+  if (!message) return;
+  Use(*message);
+  const auto again = messages::Encode(*message);
+  Require(again.size() <= bytes.size());
+  Require(messages::Decode<Message>(again).has_value());
+}
+
+using Taker = void (*)(std::span<const std::byte>);
+constexpr std::array<Taker, 22> kTypes = {Take<lidar_points_t>,
+                                          Take<odometry_t>,
+                                          Take<removed_points_t>,
+                                          Take<drive_permit_t>,
+                                          Take<drive_request_t>,
+                                          Take<drive_command_t>,
+                                          Take<estop_t>,
+                                          Take<estop_ack_t>,
+                                          Take<truth_t>,
+                                          Take<pose_t>,
+                                          Take<pose_status_t>,
+                                          Take<obstacle_points_t>,
+                                          Take<floor_t>,
+                                          Take<detections_t>,
+                                          Take<map_request_t>,
+                                          Take<map_tile_t>,
+                                          Take<local_map_t>,
+                                          Take<status_t>,
+                                          Take<procman_lcm::deputy_info_t>,
+                                          Take<procman_lcm::orders_t>,
+                                          Take<procman_lcm::output_t>,
+                                          Take<procman_lcm::discovery_t>};
+
+}  // namespace
+}  // namespace clearway
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const auto bytes = std::as_bytes(std::span(data, size)).subspan(1);
+  clearway::kTypes[data[0] % clearway::kTypes.size()](bytes);
+  return 0;
+}
