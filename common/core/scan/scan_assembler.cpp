@@ -34,6 +34,7 @@ ScanAssembler::ScanAssembler(const ScanAssemblerConfig& config, int num_sensors)
   if (num_sensors < 1) throw std::invalid_argument("ScanAssembler needs at least one sensor");
   trackers_.resize(static_cast<std::size_t>(num_sensors));
   missed_in_row_.resize(static_cast<std::size_t>(num_sensors), 0);
+  stream_ids_.resize(static_cast<std::size_t>(num_sensors), kNoId);
 }
 
 SliceOutcome ScanAssembler::Add(Slice slice, std::int64_t now_us) {
@@ -52,6 +53,7 @@ SliceOutcome ScanAssembler::Judge(Slice& slice, std::int64_t now_us) {
   if (!IsValid(slice)) return SliceOutcome::kInvalid;
   SequenceTracker& tracker = trackers_[static_cast<std::size_t>(slice.sensor)];
   const std::int64_t session_before = tracker.session();
+  std::int64_t& stream_id = stream_ids_[static_cast<std::size_t>(slice.sensor)];
   const SequenceVerdict verdict = tracker.Observe(slice.session, slice.sequence, now_us);
   if (verdict == SequenceVerdict::kInvalid) return SliceOutcome::kInvalid;
   if (verdict == SequenceVerdict::kForeign) return SliceOutcome::kForeign;
@@ -59,26 +61,31 @@ SliceOutcome ScanAssembler::Judge(Slice& slice, std::int64_t now_us) {
     if (verdict != SequenceVerdict::kRestart) return SliceOutcome::kForeign;
     ended_session_.reset();
   }
+  const bool restarts = verdict == SequenceVerdict::kRestart;
+  const bool rejoins = restarts && session_before == slice.session;
+  const bool in_order = verdict == SequenceVerdict::kNext || verdict == SequenceVerdict::kGap;
+  const bool went_back = in_order && slice.scan_id < stream_id;
   if (has_emitted_ && slice.scan_id <= last_id_) {
-    if (!BeginsAnew(slice, verdict)) return SliceOutcome::kLate;
-    if (verdict == SequenceVerdict::kRestart) ended_session_ = session_before;
-    Restart(slice.session);
+    const bool new_session = restarts && (rejoins || slice.session != begun_by_session_);
+    if (!new_session && !went_back && !Contradicts(slice)) return SliceOutcome::kLate;
+    if (restarts && !rejoins) ended_session_ = session_before;
+    Restart();
   }
+  if (restarts) begun_by_session_ = slice.session;
+  if (restarts || in_order || verdict == SequenceVerdict::kFirst) stream_id = slice.scan_id;
   return Store(slice, now_us);
 }
 
-bool ScanAssembler::BeginsAnew(const Slice& slice, SequenceVerdict verdict) const {
-  const bool new_session =
-      verdict == SequenceVerdict::kRestart && slice.session != begun_by_session_;
+bool ScanAssembler::Contradicts(const Slice& slice) const {
   const bool back_in_time = slice.scan_end_utime < last_utime_start_ - config_.restart_us;
-  const bool contradicts = slice.scan_utime >= last_utime_end_;
-  return new_session || back_in_time || contradicts;
+  const bool later_than_its_id = slice.scan_utime >= last_utime_end_;
+  return back_in_time || later_than_its_id;
 }
 
-void ScanAssembler::Restart(std::int64_t session) {
+void ScanAssembler::Restart() {
   while (!in_flight_.empty()) EmitFront();
   has_emitted_ = false;
-  begun_by_session_ = session;
+  std::fill(stream_ids_.begin(), stream_ids_.end(), kNoId);
   ++restarts_;
 }
 

@@ -108,10 +108,10 @@ struct AssembledScan {
 /// for grace_us at most. A sensor that gave nothing to the last kAbsentScans scans is reported as
 /// missing but no longer waited for, until it is heard again.
 ///
-/// A sender starts anew when its session changes, or its stamps go back by more than restart_us, or
-/// a scan id that was passed comes with a start at or after the last scan's end. If its ids then
-/// lie at or below the last emitted one, what is in flight is emitted as it is and the order begins
-/// again.
+/// A sender starts anew when its session changes, when its ids go back while its numbering goes on,
+/// when its stamps go back by more than restart_us, or when a scan id that was passed comes with a
+/// start at or after the last scan's end. If its ids then lie at or below the last emitted one,
+/// what is in flight is emitted as it is and the order begins again.
 ///
 /// The result does not depend on the order in which the slices of a scan arrive.
 /// Time: O(scans in flight) a slice. Thread safety: none.
@@ -143,6 +143,8 @@ class ScanAssembler {
   }
 
  private:
+  static constexpr std::int64_t kNoId = std::numeric_limits<std::int64_t>::min();
+
   struct Part {
     Slice head;                      // The first slice that came, without its cloud.
     std::vector<PointCloud> clouds;  // By slice index.
@@ -161,25 +163,26 @@ class ScanAssembler {
   };
 
   [[nodiscard]] SliceOutcome Judge(Slice& slice, std::int64_t now_us);
-  [[nodiscard]] bool BeginsAnew(const Slice& slice, SequenceVerdict verdict) const;
+  [[nodiscard]] bool Contradicts(const Slice& slice) const;
   [[nodiscard]] SliceOutcome Store(Slice& slice, std::int64_t now_us);
   [[nodiscard]] std::deque<Pending>::iterator FindOrOpen(std::int64_t scan_id);
   [[nodiscard]] bool IsDone(const Pending& pending) const;
   [[nodiscard]] std::int64_t DueAt(const Pending& pending) const;
-  void Restart(std::int64_t session);
+  void Restart();
   void EmitFront();
   [[nodiscard]] static AssembledScan Finish(const Pending& pending);
 
   ScanAssemblerConfig config_;
   std::vector<SequenceTracker> trackers_;  // By sensor.
   std::vector<int> missed_in_row_;         // By sensor.
+  std::vector<std::int64_t> stream_ids_;   // By sensor: scan of its newest slice in this order.
   std::deque<Pending> in_flight_;          // Ascending scan_id.
   std::vector<AssembledScan> ready_;
   bool has_emitted_ = false;  // In the present order of ids.
   std::int64_t last_id_ = 0;
   std::int64_t last_utime_start_ = 0;
   std::int64_t last_utime_end_ = 0;
-  std::optional<std::int64_t> begun_by_session_;
+  std::optional<std::int64_t> begun_by_session_;  // The session that appeared last.
   std::optional<std::int64_t> ended_session_;
   std::int64_t restarts_ = 0;
   std::array<std::int64_t, kNumSliceOutcomes> counts_{};

@@ -277,6 +277,62 @@ TEST(ScanAssembler, FollowsALogThatIsPlayedAgain) {
   EXPECT_EQ(assembler.restarts(), 1);
 }
 
+TEST(ScanAssembler, FollowsAShortLogThatIsPlayedManyTimes) {
+  ScanAssembler assembler({}, 1);
+  std::size_t emitted = 0;
+  for (int round = 0; round < 5; ++round) {
+    for (int id = 0; id < 15; ++id) {  // 1.5 s: less than restart_us back.
+      const std::int64_t now = (round * 15 + id) * kScan_us;
+      for (int index = 0; index < 10; ++index) assembler.Add(MakeSlice(id, index, 10), now);
+      emitted += assembler.Poll(now).size();
+    }
+  }
+
+  // The numbering must have gone back for a few slices before that is believed.
+  EXPECT_GE(emitted, 5U * 15U - 4U);
+  EXPECT_EQ(assembler.restarts(), 4);
+  EXPECT_EQ(assembler.count(SliceOutcome::kForeign), 0);
+}
+
+TEST(ScanAssembler, FollowsASenderWhoseIdsGoBackWhileItsNumberingGoesOn) {
+  ScanAssembler assembler({}, 1);
+  std::size_t emitted = 0;
+  std::int64_t sequence = 0;
+  for (int round = 0; round < 3; ++round) {
+    for (int id = 0; id < 15; ++id) {
+      Slice slice = MakeSlice(id, 0, 1);
+      slice.sequence = sequence++;
+      const std::int64_t now = (round * 15 + id) * kScan_us;
+      assembler.Add(slice, now);
+      emitted += assembler.Poll(now).size();
+    }
+  }
+
+  EXPECT_EQ(emitted, 45U);
+  EXPECT_EQ(assembler.restarts(), 2);
+}
+
+TEST(ScanAssembler, RecoversFromEachSliceOfAPassingPublisher) {
+  ScanAssembler assembler({}, 1);
+  std::set<std::int64_t> emitted;
+  for (int id = 0; id < 200; ++id) {
+    const std::int64_t now = id * kScan_us;
+    if (id == 20 || id == 70) {
+      Slice poison = MakeSlice(id, 0, 1, 0, 40 + id);
+      poison.scan_id = std::int64_t{1} << 62;
+      assembler.Add(poison, now);
+    }
+    assembler.Add(MakeSlice(id, 0, 1), now);
+    for (const AssembledScan& scan : assembler.Poll(now)) emitted.insert(scan.scan_id);
+  }
+
+  // Each costs the time for which two sessions count as two publishers: 2 s.
+  for (int id = 0; id < 200; ++id) {
+    const bool is_shadowed = (id >= 20 && id <= 42) || (id >= 70 && id <= 92);
+    EXPECT_TRUE(is_shadowed || emitted.contains(id)) << id;
+  }
+}
+
 TEST(ScanAssembler, RecoversFromOneAbsurdScanId) {
   ScanAssembler assembler({}, 1);
   std::set<std::int64_t> emitted;
