@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -227,7 +228,11 @@ struct VehicleConfig {
         if (!IsInsideFootprint(box)) broken.emplace_back("a body box sticks out of the footprint");
       }
     }
-    if (sensors.empty()) broken.emplace_back("at least one sensor is needed");
+    if (std::none_of(sensors.begin(), sensors.end(), [](const SensorConfig& sensor) {
+          return sensor.required;
+        })) {
+      broken.emplace_back("at least one sensor with required=\"true\" is needed");
+    }
     for (std::size_t i = 0; i < sensors.size(); ++i) {
       if (FindSensor(sensors[i].name) != static_cast<int>(i)) {
         broken.push_back("the sensor name '" + sensors[i].name + "' is used twice");

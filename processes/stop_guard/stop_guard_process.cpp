@@ -31,8 +31,9 @@ StopGuardProcess::StopGuardProcess(const core::StopGuardConfig& config,
     : vehicle_(vehicle), node_(node), guard_(config, vehicle) {
   process::Runtime& runtime = node_.runtime();
   node_.Subscribe<lidar_points_t>(kLidarPoints, [this](const auto& m) { OnLidarPoints(m); });
-  node_.Subscribe<detections_t>(
-      kDetections, [this, &runtime](const auto&) { guard_.OnDetections(runtime.MonotonicUs()); });
+  node_.Subscribe<detections_t>(kDetections, [this, &runtime](const detections_t& m) {
+    guard_.OnDetections(m.utime, runtime.MonotonicUs());
+  });
   if (!vehicle_.stationary) {
     node_.Subscribe<odometry_t>(kOdometry, [this, &runtime](const odometry_t& m) {
       guard_.OnOdometry(m.v_mps, m.w_radps, runtime.MonotonicUs());
@@ -46,8 +47,10 @@ StopGuardProcess::StopGuardProcess(const core::StopGuardConfig& config,
 
 void StopGuardProcess::OnLidarPoints(const lidar_points_t& message) {
   const std::int64_t begin_us = node_.runtime().MonotonicUs();
-  guard_.OnSlice(messages::FromLcm(message, vehicle_.FindSensor(message.sensor).value_or(-1)),
-                 begin_us);
+  const core::Slice slice =
+      messages::FromLcm(message, vehicle_.FindSensor(message.sensor).value_or(-1));
+  guard_.OnSlice(slice, begin_us);
+  if (slice.sensor < 0 || !core::IsValid(slice)) return;
   const core::Permit permit = guard_.PermitAt(begin_us);
   const std::int64_t duration_us = node_.runtime().MonotonicUs() - begin_us;
   node_.AddProcessingTime(duration_us);

@@ -28,15 +28,28 @@ bool SensorWatch::OnSlice(std::int64_t session,
                           std::int64_t sequence,
                           std::int64_t stamp_us,
                           std::int64_t now_us) {
+  const std::int64_t session_before = tracker_.session();
   const SequenceVerdict verdict = tracker_.Observe(session, sequence, now_us);
-  if (verdict == SequenceVerdict::kForeign) {
+  const bool restarts = verdict == SequenceVerdict::kRestart;
+  // One sender starts anew with a new session, and not twice in a moment. A session that is heard
+  // again from its beginning is a log that is played, not a sensor.
+  const bool repeats = restarts && (session == session_before || RestartedLately(now_us));
+  if (verdict == SequenceVerdict::kForeign || repeats) {
     foreign_heard_ = true;
     foreign_us_ = now_us;
   }
   if (!IsNewest(verdict)) return false;
-  if (verdict == SequenceVerdict::kRestart) freshness_.Reset();
+  if (restarts) {
+    freshness_.Reset();
+    has_restarted_ = true;
+    restart_us_ = now_us;
+  }
   freshness_.OnArrival(now_us, stamp_us);
   return true;
+}
+
+bool SensorWatch::RestartedLately(std::int64_t now_us) const {
+  return has_restarted_ && now_us - restart_us_ <= SequenceTracker::kForeign_us;
 }
 
 void SensorWatch::OnReturns(std::int64_t num_returns, std::int64_t now_us) {

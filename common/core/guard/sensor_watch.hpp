@@ -25,7 +25,8 @@ enum class SensorState : std::int8_t {
   kNotHeard,       ///< No slice has come yet.
   kSilent,         ///< None within slice_timeout_us.
   kLate,           ///< Slices come, but late: a queue is being drained, a stage is too slow.
-  kTwoPublishers,  ///< A second publisher was heard within SequenceTracker::kForeign_us.
+  kTwoPublishers,  ///< A second publisher, or slices played again, within
+                   ///< SequenceTracker::kForeign_us.
   kNoReturns,      ///< Slices without returns: covered, or looking at nothing.
 };
 
@@ -53,12 +54,15 @@ class SensorWatch {
 
  private:
   [[nodiscard]] std::int64_t ReturnsWithinWindow(std::int64_t now_us) const;
+  [[nodiscard]] bool RestartedLately(std::int64_t now_us) const;
 
   StopGuardConfig config_;
   SequenceTracker tracker_;
   FreshnessWatch freshness_;
   bool foreign_heard_ = false;
   std::int64_t foreign_us_ = 0;
+  bool has_restarted_ = false;
+  std::int64_t restart_us_ = 0;
   std::int64_t half_start_us_ = 0;   // The window is counted in halves.
   std::int64_t returns_now_ = 0;     // Since half_start_us_.
   std::int64_t returns_before_ = 0;  // In the half before.

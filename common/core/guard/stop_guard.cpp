@@ -8,7 +8,14 @@ namespace clearway::core {
 
 namespace {
 
-constexpr double kMaxSpeed = 100.0;  // Faster is a defect of the message [m/s or rad/s].
+// A vehicle that measures more than this above its top speed is not believed: the hits would be
+// carried past it.
+constexpr double kSpeedFactor = 1.5;
+constexpr double kSpeedSlack = 0.5;  // [m/s or rad/s]
+
+constexpr bool IsPossible(double speed, double top_speed) {
+  return std::abs(speed) <= kSpeedFactor * top_speed + kSpeedSlack;
+}
 
 constexpr std::size_t Index(Direction d) {
   return static_cast<std::size_t>(d);
@@ -146,15 +153,15 @@ bool StopGuard::TakePoint(const Sensor& sensor, const Eigen::Vector3f& point_sen
   return true;
 }
 
-void StopGuard::OnDetections(std::int64_t now_us) {
+void StopGuard::OnDetections(std::int64_t stamp_us, std::int64_t now_us) {
   AdvanceTo(now_us);
-  detections_heard_ = true;
-  detections_us_ = now_us;
+  detections_.OnArrival(now_us, stamp_us);
 }
 
 void StopGuard::OnOdometry(double forward_mps, double turn_radps, std::int64_t now_us) {
   AdvanceTo(now_us);
-  if (!(std::abs(forward_mps) <= kMaxSpeed && std::abs(turn_radps) <= kMaxSpeed)) {
+  const double top_mps = std::max(vehicle_.max_forward_mps, vehicle_.max_backward_mps);
+  if (!IsPossible(forward_mps, top_mps) || !IsPossible(turn_radps, vehicle_.max_turn_radps)) {
     ++counts_.invalid_odometry;
     return;
   }
@@ -170,7 +177,9 @@ bool StopGuard::IsOdometryMissing(std::int64_t now_us) const {
 }
 
 bool StopGuard::AreDetectionsMissing(std::int64_t now_us) const {
-  return !detections_heard_ || now_us - detections_us_ > config_.detections_timeout_us;
+  const FreshnessWatch::State state = detections_.Query(now_us);
+  return !state.has_arrived || state.age_us > config_.detections_timeout_us ||
+         state.lateness_us > config_.detections_timeout_us;
 }
 
 Permit StopGuard::PermitAt(std::int64_t now_us) {

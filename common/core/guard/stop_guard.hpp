@@ -72,7 +72,7 @@ struct StopGuardCounts {
   std::int64_t returns = 0;           ///< Points that could be believed.
   std::int64_t obstacle_points = 0;   ///< Of those: within the height band.
   std::int64_t hole_points = 0;       ///< Of those: below hole_depth_m.
-  std::int64_t invalid_odometry = 0;  ///< NaN, or faster than 100 m/s; ignored.
+  std::int64_t invalid_odometry = 0;  ///< NaN, or far above the top speed; ignored.
 };
 
 /// The map-free path of the stop guard: raw slices in, permit out. Normally closed: no motion is
@@ -97,8 +97,8 @@ class StopGuard {
 
   /// Takes a slice in the `sensor` frame; slice.sensor is the index into VehicleConfig::sensors.
   void OnSlice(const Slice& slice, std::int64_t now_us);
-  /// DETECTIONS arrived, empty or not.
-  void OnDetections(std::int64_t now_us);
+  /// DETECTIONS arrived, empty or not; `stamp_us` is that of their scan.
+  void OnDetections(std::int64_t stamp_us, std::int64_t now_us);
   /// Measured speed (forward positive) and turn rate (left positive).
   void OnOdometry(double forward_mps, double turn_radps, std::int64_t now_us);
 
@@ -144,8 +144,7 @@ class StopGuard {
   std::int64_t odometry_us_ = 0;
   double forward_mps_ = 0.0;
   double turn_radps_ = 0.0;
-  bool detections_heard_ = false;
-  std::int64_t detections_us_ = 0;
+  FreshnessWatch detections_;
   StopGuardCounts counts_;
 };
 

@@ -117,11 +117,12 @@ struct StopGuardConfig {
                     1,
                     1000000,
                     "Fewer returns within returns_window_ms are taken as a covered lens: stop.");
-    visitor.Milliseconds("detections_timeout_ms",
-                         self.detections_timeout_us,
-                         50.0,
-                         10000.0,
-                         "DETECTIONS silent for longer count as missing [ms].");
+    visitor.Milliseconds(
+        "detections_timeout_ms",
+        self.detections_timeout_us,
+        50.0,
+        10000.0,
+        "DETECTIONS that are silent, or late, by more than this count as missing [ms].");
     visitor.Number("degraded_speed_mps",
                    self.degraded_speed_mps,
                    0.0,

@@ -61,7 +61,7 @@ class Rig {
   void Step(const std::vector<Eigen::Vector3f>& points_vehicle = {}) {
     now += kSlice_us;
     if (sends_odometry) guard.OnOdometry(v_mps, w_radps, now);
-    if (sends_detections) guard.OnDetections(now);
+    if (sends_detections) guard.OnDetections(now, now);
     if (sends_slices) guard.OnSlice(MakeSlice(points_vehicle), now);
     if (!repeats_sequence) ++sequence;
   }
@@ -130,6 +130,56 @@ TEST(StopGuard, PermitsTopSpeedAllRoundWithASpinningSensor) {
 
   EXPECT_DOUBLE_EQ(permit.backward_mps(), vehicle.max_backward_mps);
   EXPECT_DOUBLE_EQ(permit.turn_right_radps(), vehicle.max_turn_radps);
+}
+
+TEST(StopGuard, DoesNotTakeSlicesThatArePlayedAgainAndAgainForASensor) {
+  Rig rig;
+  rig.Run(100);
+
+  for (int round = 0; round < 10; ++round) {
+    rig.sequence = 0;
+    rig.Run(20);  // The numbering has gone back for long enough to be believed.
+
+    EXPECT_TRUE(AllZero(rig.guard.PermitAt(rig.now))) << round;
+    rig.Run(80);
+  }
+}
+
+TEST(StopGuard, DoesNotTakeSessionsThatChangeAllTheTimeForASensor) {
+  Rig rig;
+  rig.Run(100);
+
+  for (int i = 0; i < 50; ++i) {
+    ++rig.session;
+    rig.sequence = 0;
+    rig.Step();
+    if (i > 0) {
+      EXPECT_TRUE(AllZero(rig.guard.PermitAt(rig.now))) << i;
+    }
+  }
+}
+
+TEST(StopGuard, DoesNotBelieveASpeedThatTheVehicleCannotReach) {
+  Rig rig;
+  const double permitted_mps = rig.Run(50, Post(1.1F, 0.0F)).forward_mps();
+
+  rig.v_mps = 2.5 * rig.vehicle_.max_forward_mps;
+  const Permit permit = rig.Run(5);
+
+  EXPECT_LE(permit.forward_mps(), permitted_mps) << "the post must not be carried past";
+  EXPECT_EQ(rig.guard.counts().invalid_odometry, 5);
+}
+
+TEST(StopGuard, TakesDetectionsThatComeLateAsMissing) {
+  Rig rig;
+  rig.sends_detections = false;
+  for (int i = 0; i < 300; ++i) {
+    // A pipeline that falls behind: each second of scans takes two.
+    rig.guard.OnDetections(rig.now / 2, rig.now);
+    rig.Step();
+  }
+
+  EXPECT_TRUE(rig.guard.PermitAt(rig.now).detections_missing);
 }
 
 class StopGuardDistanceTest : public testing::TestWithParam<double> {};
