@@ -71,12 +71,16 @@ LcmConnection::~LcmConnection() {
   lcm_destroy(lcm_);
 }
 
-void LcmConnection::Publish(const std::string& channel, std::span<const std::byte> bytes) {
+bool LcmConnection::Publish(const std::string& channel, std::span<const std::byte> bytes) {
   errno = 0;
-  if (lcm_publish(lcm_, channel.c_str(), bytes.data(), static_cast<unsigned>(bytes.size())) != 0) {
+  const auto size = static_cast<unsigned>(bytes.size());
+  const bool sent = lcm_publish(lcm_, channel.c_str(), bytes.data(), size) == 0;
+  if (!sent && !has_sent_) {
     throw std::runtime_error("cannot publish " + std::to_string(bytes.size()) + " bytes on " +
                              channel + " at " + full_url_ + ": " + std::strerror(errno) + kAdvice);
   }
+  has_sent_ = has_sent_ || sent;
+  return sent;
 }
 
 void LcmConnection::Subscribe(const std::string& channel, BytesHandler handler) {

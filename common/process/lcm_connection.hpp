@@ -27,7 +27,9 @@ class LcmConnection {
   LcmConnection(const LcmConnection&) = delete;
   LcmConnection& operator=(const LcmConnection&) = delete;
 
-  void Publish(const std::string& channel, std::span<const std::byte> bytes);
+  /// Whether the network took it. Until the first message has gone out a failure is thrown: what
+  /// cannot send at all is not set up. Later the network may come and go.
+  bool Publish(const std::string& channel, std::span<const std::byte> bytes);
 
   /// `channel` is taken literally (LCM itself takes a regular expression).
   void Subscribe(const std::string& channel, BytesHandler handler);
@@ -52,6 +54,7 @@ class LcmConnection {
   std::string full_url_;
   ::_lcm_t* lcm_ = nullptr;
   int file_descriptor_ = -1;
+  bool has_sent_ = false;
   std::list<Subscription> subscriptions_;  // A list: LCM keeps pointers to its elements.
   std::exception_ptr handler_error_;
 };

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "common/process/lcm_connection.hpp"
+#include "common/process/log.hpp"
 
 namespace clearway::process {
 namespace {
@@ -137,7 +138,12 @@ std::int64_t LiveRuntime::NewSession() {
 void LiveRuntime::Publish(messages::BusId bus,
                           const std::string& channel,
                           std::span<const std::byte> bytes) {
-  ConnectionOf(bus).Publish(channel_prefix_ + channel, bytes);
+  const bool sent = ConnectionOf(bus).Publish(channel_prefix_ + channel, bytes);
+  if (!sent) ++send_failures_;
+  if (sent == last_send_failed_) {
+    LogWarning(sent ? "sending works again" : "cannot send " + channel + ": is the network gone?");
+  }
+  last_send_failed_ = !sent;
 }
 
 void LiveRuntime::Subscribe(messages::BusId bus, const std::string& channel, BytesHandler handler) {

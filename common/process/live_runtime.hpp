@@ -42,6 +42,7 @@ class LiveRuntime final : public Runtime {
   void Publish(messages::BusId bus,
                const std::string& channel,
                std::span<const std::byte> bytes) override;
+  [[nodiscard]] std::int64_t SendFailures() const override { return send_failures_; }
   void Subscribe(messages::BusId bus, const std::string& channel, BytesHandler handler) override;
   TimerId Every(std::int64_t period_us, std::function<void()> callback) override;
   TimerId After(std::int64_t delay_us, std::function<void()> callback) override;
@@ -61,6 +62,8 @@ class LiveRuntime final : public Runtime {
   Timers timers_;
   int signal_fd_ = -1;
   bool stop_ = false;
+  std::int64_t send_failures_ = 0;
+  bool last_send_failed_ = false;
 };
 
 }  // namespace clearway::process

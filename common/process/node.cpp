@@ -2,6 +2,7 @@
 #include "common/process/node.hpp"
 
 #include <array>
+#include <limits>
 #include <unistd.h>
 
 #include "common/process/log.hpp"
@@ -10,6 +11,13 @@ namespace clearway::process {
 namespace {
 
 constexpr std::int64_t kStatusPeriodUs = 1'000'000;
+constexpr std::size_t kMaxStreams = 64;
+
+// Counts saturate instead of overflowing: gaps of hostile sequence numbers are as large as it gets.
+std::int64_t AddCounts(std::int64_t a, std::int64_t b) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  return a > kMost - b ? kMost : a + b;
+}
 
 std::string HostName() {
   std::array<char, 256> name{};
@@ -52,6 +60,8 @@ void Node::NoteReceived() {
 }
 
 void Node::Track(const std::string& stream, std::int64_t session, std::int64_t sequence) {
+  // Names come from outside: what is not one of the first few is not watched.
+  if (trackers_.size() >= kMaxStreams && !trackers_.contains(stream)) return;
   trackers_[stream].Observe(session, sequence, runtime_.MonotonicUs());
 }
 
@@ -60,11 +70,18 @@ void Node::Send(const Outgoing& outgoing) {
   ++published_;
 }
 
+void Node::DropWaitingBurst(const std::string& channel) {
+  dropped_ += static_cast<std::int64_t>(std::erase_if(queue_, [&](const Outgoing& waiting) {
+    return waiting.channel == channel && waiting.burst != burst_under_way_;
+  }));
+}
+
 void Node::SendNextOfQueue() {
   pump_running_ = !queue_.empty();
   if (!pump_running_) return;
   const Outgoing next = std::move(queue_.front());
   queue_.pop_front();
+  burst_under_way_ = next.burst;
   Send(next);
   runtime_.After(runtime_.BurstIntervalUs(next.bus), [this] { SendNextOfQueue(); });
 }
@@ -87,8 +104,8 @@ void Node::PublishStatus() {
   status.missing = 0;
   status.foreign = 0;
   for (const auto& [stream, tracker] : trackers_) {
-    status.missing += tracker.counts().missing;
-    status.foreign += tracker.counts().foreign;
+    status.missing = AddCounts(status.missing, tracker.counts().missing);
+    status.foreign = AddCounts(status.foreign, tracker.counts().foreign);
   }
   const ProcessingTimes::Summary times = times_.Take();
   status.scans = static_cast<std::int32_t>(times.count);
@@ -102,6 +119,10 @@ void Node::PublishStatus() {
     counter.value = value;
     status.counters.push_back(counter);
   }
+  counter_t send_failures;
+  send_failures.name = "send_failures";
+  send_failures.value = runtime_.SendFailures();
+  status.counters.push_back(send_failures);
   status.n = static_cast<std::int32_t>(status.counters.size());
   Number(status_channel_.name, status);
   runtime_.Publish(status_channel_.bus, status_channel_.name, messages::Encode(status));

@@ -71,16 +71,19 @@ class Node {
   template <typename Message>
   void Publish(const messages::Channel<Message>& channel, Message message) {
     Number(channel.name, message);
-    Send({channel.bus, channel.name, messages::Encode(message)});
+    Send({channel.bus, channel.name, messages::Encode(message), 0});
   }
 
   /// Sends the slices of one burst in order, each the bus's burst interval after the one before.
-  /// The first goes at once when nothing is under way.
+  /// The first goes at once when nothing is under way. A burst of this channel that has not begun
+  /// when a newer one comes is given up and counted as dropped: old scans do not queue up.
   template <typename Message>
   void PublishBurst(const messages::Channel<Message>& channel, std::vector<Message> burst) {
+    DropWaitingBurst(channel.name);
+    ++burst_id_;
     for (Message& message : burst) {
       Number(channel.name, message);
-      queue_.push_back({channel.bus, channel.name, messages::Encode(message)});
+      queue_.push_back({channel.bus, channel.name, messages::Encode(message), burst_id_});
     }
     if (!pump_running_) SendNextOfQueue();
   }
@@ -111,6 +114,7 @@ class Node {
     messages::BusId bus;
     std::string channel;
     std::vector<std::byte> bytes;
+    std::int64_t burst;  // 0: alone.
   };
 
   // What is numbered together: a channel or, where the type names a sensor, that sensor on it.
@@ -134,6 +138,7 @@ class Node {
   void NoteReceived();
   void Track(const std::string& stream, std::int64_t session, std::int64_t sequence);
   void Send(const Outgoing& outgoing);
+  void DropWaitingBurst(const std::string& channel);
   void SendNextOfQueue();
   void PublishStatus();
 
@@ -147,6 +152,8 @@ class Node {
   std::map<std::string, core::SequenceTracker> trackers_;
   std::map<std::string, std::int64_t> counters_;
   std::deque<Outgoing> queue_;
+  std::int64_t burst_id_ = 0;
+  std::int64_t burst_under_way_ = 0;
   bool pump_running_ = false;
   ProcessingTimes times_;
   std::int64_t received_ = 0;

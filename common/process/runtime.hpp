@@ -31,10 +31,14 @@ class Runtime {
   /// A number that tells this life of a process from all others; positive.
   [[nodiscard]] virtual std::int64_t NewSession() = 0;
 
-  /// Sends bytes. Throws std::runtime_error when the bus refuses them.
+  /// Sends bytes. Throws std::runtime_error when the bus has never taken anything; what it refuses
+  /// later is lost and counted by SendFailures().
   virtual void Publish(messages::BusId bus,
                        const std::string& channel,
                        std::span<const std::byte> bytes) = 0;
+
+  /// Messages that a bus refused, since the start.
+  [[nodiscard]] virtual std::int64_t SendFailures() const = 0;
 
   /// Calls `handler` with each message of exactly this channel. Throws std::runtime_error when the
   /// bus cannot be listened to.

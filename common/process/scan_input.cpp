@@ -4,6 +4,12 @@
 #include <utility>
 
 namespace clearway::process {
+namespace {
+
+// Without a scan for this long the input is missing; a scan that is later than this is old [us].
+constexpr std::int64_t kMissingUs = 500'000;
+
+}  // namespace
 
 ScanInput::ScanInput(Node& node,
                      const core::ScanAssemblerConfig& config,
@@ -21,6 +27,7 @@ core::SliceOutcome ScanInput::Add(core::Slice slice) {
 void ScanInput::Emit() {
   for (const core::AssembledScan& scan : assembler_.Poll(node_.runtime().MonotonicUs())) {
     ++scans_;
+    freshness_.OnArrival(node_.runtime().MonotonicUs(), scan.utime_end);
     if (!scan.complete) ++incomplete_scans_;
     on_scan_(scan);
   }
@@ -29,6 +36,36 @@ void ScanInput::Emit() {
   if (const auto due_us = assembler_.NextDeadline()) {
     deadline_ = node_.runtime().After(*due_us - node_.runtime().MonotonicUs(), [this] { Emit(); });
   }
+}
+
+std::optional<State> ScanInput::Trouble(const std::string& channel) const {
+  const auto scans = freshness_.Query(node_.runtime().MonotonicUs());
+  const std::int64_t input_age_us = node_.InputAgeUs();
+  const bool scans_come = scans.has_arrived && scans.age_us <= kMissingUs;
+  if (scans_come && scans.lateness_us <= kMissingUs) return std::nullopt;
+  if (scans_come) {
+    return State{
+        status_t::STATE_DEGRADED,
+        true,
+        "cannot keep up: scans are late by " + std::to_string(scans.lateness_us / 1000) + " ms"};
+  }
+  if (input_age_us >= 0 && input_age_us <= kMissingUs && Refused() > 0) {
+    return State{status_t::STATE_FAULT,
+                 true,
+                 channel + " arrives, but nothing of it can be used: see the counts slices_*"};
+  }
+  if (!scans.has_arrived) return State{status_t::STATE_WAITING, true, "no " + channel + " yet"};
+  return State{
+      status_t::STATE_WAITING, true, channel + " stopped: is the process that sends it running?"};
+}
+
+std::int64_t ScanInput::Refused() const {
+  std::int64_t refused = 0;
+  for (std::size_t i = 0; i < core::kNumSliceOutcomes; ++i) {
+    const auto outcome = static_cast<core::SliceOutcome>(i);
+    if (outcome != core::SliceOutcome::kAccepted) refused += assembler_.count(outcome);
+  }
+  return refused;
 }
 
 void ScanInput::SetCounters() {

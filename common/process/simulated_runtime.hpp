@@ -39,6 +39,7 @@ class SimulatedRuntime final : public Runtime {
   void Publish(messages::BusId bus,
                const std::string& channel,
                std::span<const std::byte> bytes) override;
+  [[nodiscard]] std::int64_t SendFailures() const override { return 0; }
   void Subscribe(messages::BusId bus, const std::string& channel, BytesHandler handler) override;
   TimerId Every(std::int64_t period_us, std::function<void()> callback) override;
   TimerId After(std::int64_t delay_us, std::function<void()> callback) override;

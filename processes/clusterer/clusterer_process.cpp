@@ -15,8 +15,6 @@ namespace {
 using messages::channels::kDetections;
 using messages::channels::kObstaclePoints;
 
-constexpr std::int64_t kInputMissingUs = 500'000;
-
 obstacle_points_t WithoutPoints(obstacle_points_t message) {
   message.n = 0;
   for (auto* values : {&message.x, &message.y, &message.z}) values->clear();
@@ -112,10 +110,7 @@ void ClustererProcess::Refresh() {
 }
 
 process::State ClustererProcess::CurrentState() const {
-  if (node_.InputAgeUs() < 0) return {status_t::STATE_WAITING, true, "no OBSTACLE_POINTS yet"};
-  if (node_.InputAgeUs() > kInputMissingUs) {
-    return {status_t::STATE_WAITING, true, "OBSTACLE_POINTS stopped: is the preprocessor running?"};
-  }
+  if (const auto trouble = input_.Trouble("OBSTACLE_POINTS")) return *trouble;
   if (!last_complete_) {
     return {status_t::STATE_DEGRADED, true, "slices of OBSTACLE_POINTS are missing"};
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "processes/preprocessor/preprocessor_process.hpp"
 
+#include <algorithm>
+
 #include "common/messages/lidar_points.hpp"
 #include "common/messages/obstacle_points.hpp"
 #include "common/messages/odometry.hpp"
@@ -14,9 +16,15 @@ using messages::channels::kLidarPoints;
 using messages::channels::kObstaclePoints;
 using messages::channels::kOdometry;
 
-constexpr std::int64_t kInputMissingUs = 500'000;
 // Unknown names come from outside: remember a few, so that each is told once.
 constexpr std::size_t kMaxUnknownNames = 16;
+
+std::string Quoted(const std::string& name) {
+  std::string text = name.substr(0, core::SensorConfig::kMaxNameLength);
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 32; }, '?');
+  return '"' + text + (text.size() < name.size() ? "...\"" : "\"");
+}
 
 }  // namespace
 
@@ -42,9 +50,9 @@ PreprocessorProcess::PreprocessorProcess(const core::PreprocessorConfig& config,
 void PreprocessorProcess::OnLidarPoints(const lidar_points_t& message) {
   const std::optional<int> sensor = vehicle_.FindSensor(message.sensor);
   if (!sensor && unknown_sensors_.size() < kMaxUnknownNames &&
-      unknown_sensors_.insert(message.sensor).second) {
-    process::LogWarning("LIDAR_POINTS of a sensor that is not in the configuration: \"" +
-                        message.sensor + "\"");
+      unknown_sensors_.insert(Quoted(message.sensor)).second) {
+    process::LogWarning("LIDAR_POINTS of a sensor that is not in the configuration: " +
+                        Quoted(message.sensor));
   }
   input_.Add(messages::FromLcm(message, sensor.value_or(-1)));
   input_.Emit();
@@ -79,10 +87,7 @@ void PreprocessorProcess::Refresh() {
 }
 
 process::State PreprocessorProcess::CurrentState() const {
-  if (!last_) return {status_t::STATE_WAITING, true, "no LIDAR_POINTS yet"};
-  if (node_.InputAgeUs() > kInputMissingUs) {
-    return {status_t::STATE_WAITING, true, "LIDAR_POINTS stopped: is the driver running?"};
-  }
+  if (const auto trouble = input_.Trouble("LIDAR_POINTS")) return *trouble;
   if (!last_->missing_sensors.empty()) {
     const auto sensor = static_cast<std::size_t>(last_->missing_sensors.front());
     return {status_t::STATE_DEGRADED,

@@ -60,6 +60,7 @@ class RelayRuntime final : public process::Runtime {
   [[nodiscard]] std::int64_t BurstIntervalUs(messages::BusId bus) const override {
     return inner_.BurstIntervalUs(bus);
   }
+  [[nodiscard]] std::int64_t SendFailures() const override { return inner_.SendFailures(); }
   [[nodiscard]] std::int64_t ReceiveBufferBytes() const override {
     return inner_.ReceiveBufferBytes();
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/process/node.hpp"
 
+#include <limits>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -126,6 +127,59 @@ TEST_F(NodeTest, PacesTheSlicesOfABurstAndNumbersThem) {
   EXPECT_THAT(sequences, ElementsAre(0, 1, 2, 3, 4));
 }
 
+TEST_F(NodeTest, GivesUpABurstThatHasNotBegunWhenANewerOneComes) {
+  std::vector<std::int64_t> scans;
+  runtime_.Subscribe(kFloor.bus, kFloor.name, [&](std::span<const std::byte> bytes) {
+    scans.push_back(messages::Decode<floor_t>(bytes)->scan_id);
+  });
+  const auto burst_of = [](std::int64_t scan) {
+    floor_t message{};
+    message.scan_id = scan;
+    return std::vector<floor_t>(3, message);
+  };
+
+  node_.PublishBurst(kFloor, burst_of(1));
+  node_.PublishBurst(kFloor, burst_of(2));
+  node_.PublishBurst(kFloor, burst_of(3));
+  const status_t& status = StatusAfterOneSecond();
+
+  EXPECT_THAT(scans, ElementsAre(1, 1, 1, 3, 3, 3));
+  EXPECT_EQ(status.dropped, 3);
+}
+
+TEST_F(NodeTest, CountsOfHostileSequencesSaturate) {
+  node_.Subscribe<drive_request_t>(kDriveRequest, [](const auto&) {});
+  node_.Subscribe<lidar_points_t>(kLidarPoints, [](const auto&) {});
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  for (const char* sensor : {"a", "b", "c"}) {
+    lidar_points_t slice{};
+    slice.sensor = sensor;
+    for (const std::int64_t sequence : {std::int64_t{0}, kMost}) {
+      slice.sequence = sequence;
+      runtime_.Publish(kLidarPoints.bus, kLidarPoints.name, messages::Encode(slice));
+    }
+  }
+
+  EXPECT_EQ(StatusAfterOneSecond().missing, kMost);
+}
+
+TEST_F(NodeTest, AFloodOfNamesDoesNotGrowTheNode) {
+  node_.Subscribe<lidar_points_t>(kLidarPoints, [](const auto&) {});
+  lidar_points_t slice{};
+  for (int i = 0; i < 1000; ++i) {
+    slice.sensor = "sensor" + std::to_string(i);
+    slice.sequence = 0;
+    runtime_.Publish(kLidarPoints.bus, kLidarPoints.name, messages::Encode(slice));
+    slice.sequence = 2;  // A gap of one message for each stream that is watched.
+    runtime_.Publish(kLidarPoints.bus, kLidarPoints.name, messages::Encode(slice));
+  }
+
+  const status_t& status = StatusAfterOneSecond();
+
+  EXPECT_EQ(status.received, 2000);
+  EXPECT_LE(status.missing, 64);
+}
+
 TEST_F(NodeTest, RefreshesTheStateBeforeEachStatus) {
   node_.BeforeStatus([this] {
     node_.SetState({status_t::STATE_WAITING, true, "no input"});
@@ -135,7 +189,7 @@ TEST_F(NodeTest, RefreshesTheStateBeforeEachStatus) {
   const status_t& status = StatusAfterOneSecond();
 
   EXPECT_EQ(status.state, status_t::STATE_WAITING);
-  ASSERT_EQ(status.n, 1);
+  ASSERT_EQ(status.n, 2);  // And send_failures.
   EXPECT_EQ(status.counters[0].name, "late_slices");
   EXPECT_EQ(status.counters[0].value, 3);
 }
