@@ -111,10 +111,23 @@ void GraphRun::StartFeeding() {
   feeder_ = std::make_unique<ChildProcess>("play", command, settings_.output_folder / "play.log");
 }
 
+// Statuses of a graph that somebody else runs on the same bus.
+void GraphRun::RefuseForeign(const status_t& status) const {
+  const bool is_ours =
+      std::any_of(processes_.begin(), processes_.end(), [&status](const auto& process) {
+        return process->pid() == status.pid;
+      });
+  if (is_ours) return;
+  throw std::runtime_error("another " + status.process + " (process " + std::to_string(status.pid) +
+                           " on " + status.host +
+                           ") runs on this bus: stop it, or use --channel-prefix or --lcm-url");
+}
+
 std::string GraphRun::WhoIsNotReady() const {
   for (const std::string process : kProcesses) {
     const status_t* const status = statistics_.StatusOf(process);
     if (status == nullptr) return process + " (nothing heard from it)";
+    RefuseForeign(*status);
     if (status->ready == 0) return process + " (" + status->text + ")";
   }
   return {};

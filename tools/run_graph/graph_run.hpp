@@ -70,6 +70,7 @@ class GraphRun {
   void StartFeeding();
   void Supervise();
   void CheckForDeaths();
+  void RefuseForeign(const status_t& status) const;
   [[nodiscard]] std::string WhoIsNotReady() const;
   [[nodiscard]] bool IsInputOver();
   void StopProcesses();

@@ -17,6 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr char kPicture[] = "last_scan.png";
+
 struct Arguments {
   graph::Options common;
   std::string input;
@@ -117,7 +119,7 @@ void Report(const Arguments& arguments, const graph::GraphConfig& config, const 
   const RunSummary summary = run.statistics().Summarise();
   std::fputs(FormatTable(summary, run.machine_use()).c_str(), stdout);
   if (const ScanRecord* const scan = run.statistics().LastDetectedScan()) {
-    const fs::path picture = arguments.output / "last_scan.png";
+    const fs::path picture = arguments.output / kPicture;
     plot::WritePng(MakePicture(*scan,
                                run.statistics().last_permit(),
                                config.vehicle,
@@ -134,12 +136,17 @@ void Report(const Arguments& arguments, const graph::GraphConfig& config, const 
 
 int RunAndReport(const Arguments& arguments, const graph::GraphConfig& config) {
   fs::create_directories(arguments.output);
+  fs::remove(arguments.output / kPicture);  // Of an earlier run.
   process::LiveRuntime runtime(config.buses, arguments.common.channel_prefix);
   process::Node node(
       runtime, {"run", CLEARWAY_VERSION, config::Digest(config)}, messages::channels::kRunStatus);
   GraphRun run(runtime, node, SettingsOf(arguments, config));
   run.Run();
   Report(arguments, config, run);
+  if (run.statistics().num_detected() == 0) {
+    throw std::runtime_error("no scan went through the whole graph; what the processes say is in " +
+                             arguments.output.string());
+  }
   if (run.input_problem().empty()) return graph::kExitOk;
   std::fprintf(stderr, "clearway-run: %s", run.input_problem().c_str());
   return graph::kExitFailure;

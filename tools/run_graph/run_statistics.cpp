@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "common/core/scan/scan_assembler.hpp"
 
 namespace clearway::run_graph {
 namespace {
@@ -60,7 +63,8 @@ void RunStatistics::OnLidarPoints(const lidar_points_t& message, std::int64_t ar
   waiting_.push_back(
       {message.sensor, message.scan_id, message.slice_index, message.scan_utime, arrival_us});
   if (waiting_.size() > kMaxWaitingSlices) waiting_.pop_front();
-  Record(message.scan_utime).raw.push_back(message);
+  ScanRecord& record = Record(message.scan_utime);
+  if (record.raw.size() < static_cast<std::size_t>(core::kMaxSlices)) record.raw.push_back(message);
 }
 
 void RunStatistics::OnObstaclePoints(const obstacle_points_t& message) {
@@ -146,7 +150,11 @@ RunSummary RunStatistics::Summarise() const {
   summary.scans_detected = static_cast<std::size_t>(std::count_if(
       detected_.begin(), detected_.end(), [this](ScanKey key) { return played_.contains(key); }));
   summary.scans_incomplete = incomplete_;
-  for (const auto& [process, missing] : missing_) summary.messages_lost += missing;
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  for (const auto& [process, missing] : missing_) {
+    summary.messages_lost =
+        missing > kMost - summary.messages_lost ? kMost : summary.messages_lost + missing;
+  }
   for (const auto& [process, times] : processing_ms_) {
     const std::size_t scans = process == "stop_guard" ? guarded_scans_.size() : times.size();
     summary.stages[process] = {scans, QuantilesOf(times)};
