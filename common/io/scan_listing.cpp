@@ -61,18 +61,19 @@ std::vector<fs::path> ListFolder(const fs::path& folder) {
     for (auto entry = fs::recursive_directory_iterator(folder);
          entry != fs::recursive_directory_iterator();
          ++entry) {
+      std::error_code ignored;  // A link that leads nowhere is no folder; reading it will tell.
+      const bool is_folder = entry->is_directory(ignored);
       if (entry->path().filename().native().starts_with('.')) {
-        if (entry->is_directory()) entry.disable_recursion_pending();
-      } else if (entry->is_regular_file()) {
-        if (IsScanFile(entry->path())) {
-          files.push_back(entry->path());
-        } else {
-          ++num_other;
-        }
+        if (is_folder) entry.disable_recursion_pending();
+      } else if (!is_folder && IsScanFile(entry->path())) {
+        files.push_back(entry->path());
+      } else if (!is_folder) {
+        ++num_other;
       }
     }
   } catch (const fs::filesystem_error& error) {
-    throw ErrorInFile(folder.string(), "cannot be searched: " + error.code().message());
+    const fs::path& place = error.path1().empty() ? folder : error.path1();
+    throw ErrorInFile(place.string(), "cannot be searched: " + error.code().message());
   }
   if (files.empty()) {
     throw ErrorInFile(folder.string(),

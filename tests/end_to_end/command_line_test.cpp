@@ -105,7 +105,14 @@ TEST_P(ProgramTest, AMissingConfigurationFileIsAConfigurationError) {
 
 TEST_P(ProgramTest, WrongOptionsAreUsageErrors) {
   for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{
-           {"--no-such-option"}, {"--log-level", "loud"}, {"--set"}, {"extra_word"}}) {
+           {"--no-such-option"},
+           {"--log-level", "loud"},
+           {"--set"},
+           {"extra_word"},
+           // Where a program has these, the number is refused; elsewhere the option is.
+           {"--scene-seconds", "nan"},
+           {"--settle", "nan"},
+           {"--for", "nan"}}) {
     const ProgramResult result = Run(With(Command(ShippedConfig("lab.xml")), wrong));
 
     EXPECT_EQ(result.exit_status, kUsage) << wrong.front();

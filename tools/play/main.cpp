@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/graph/finite_check.hpp"
 #include "common/graph/options.hpp"
 #include "common/io/lcm_log.hpp"
 #include "common/io/read_error.hpp"
@@ -36,11 +37,14 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
   app.add_option("--to-log", arguments.to_log, "Write an LCM log at once instead of playing")
       ->type_name("FILE");
   app.add_option("--rate", arguments.rate_hz, "Scans per second instead of the recording's own")
+      ->check(graph::Finite())
       ->type_name("HZ");
   app.add_option("--scene-seconds", arguments.scene_s, "How long a scene is played")
+      ->check(graph::Finite())
       ->check(CLI::Range(0.1, 86400.0))
       ->type_name("S");
   app.add_option("--settle", arguments.player.settle_s, "Wait before the first scan")
+      ->check(graph::Finite())
       ->check(CLI::Range(0.0, 60.0))
       ->type_name("S");
   app.add_flag("--loop", arguments.player.loop, "Begin again at the end");

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/graph/finite_check.hpp"
 #include "common/graph/options.hpp"
 #include "common/process/log.hpp"
 #include "tools/run_graph/graph_run.hpp"
@@ -43,7 +44,8 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
   app.add_option("--json", arguments.json, "Write the figures to this file")->type_name("FILE");
   app.add_option("--log", arguments.log, "Write all messages to this LCM log")->type_name("FILE");
   app.add_option("--for", arguments.stop_after_s, "Stop after this time")
-      ->check(CLI::PositiveNumber)
+      ->check(graph::Finite())
+      ->check(CLI::Range(0.001, 1e6))
       ->type_name("SECONDS");
   app.add_flag("--headless", arguments.headless, "No progress line");
 }

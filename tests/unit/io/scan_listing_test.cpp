@@ -53,6 +53,15 @@ TEST(ScanListing, SearchesAFolderForScansInNaturalOrder) {
                           "velodyne/deeper/1.pcd"));
 }
 
+TEST(ScanListing, ALinkThatLeadsNowhereIsAScanThatCannotBeRead) {
+  const TemporaryFolder folder;
+  folder.Write("1.bin");
+  std::filesystem::create_symlink(folder.path() / "gone.bin", folder.path() / "2.bin");
+  std::filesystem::create_symlink("3.bin", folder.path() / "3.bin");
+
+  EXPECT_THAT(List(folder.path(), folder.path()), ElementsAre("1.bin", "2.bin", "3.bin"));
+}
+
 TEST(ScanListing, TakesAFileForItself) {
   const TemporaryFolder folder;
   const auto scan = folder.Write("scan.PCD");
