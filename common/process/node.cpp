@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <set>
 #include <unistd.h>
 
 #include "common/process/log.hpp"
@@ -12,6 +13,8 @@ namespace {
 
 constexpr std::int64_t kStatusPeriodUs = 1'000'000;
 constexpr std::size_t kMaxStreams = 64;
+// Scans that a process which was not scheduled for a while may hand on at once.
+constexpr std::size_t kMaxWaitingBursts = 4;
 
 // Counts saturate instead of overflowing: gaps of hostile sequence numbers are as large as it gets.
 std::int64_t AddCounts(std::int64_t a, std::int64_t b) {
@@ -70,9 +73,18 @@ void Node::Send(const Outgoing& outgoing) {
   ++published_;
 }
 
-void Node::DropWaitingBurst(const std::string& channel) {
-  dropped_ += static_cast<std::int64_t>(std::erase_if(queue_, [&](const Outgoing& waiting) {
-    return waiting.channel == channel && waiting.burst != burst_under_way_;
+void Node::DropOldBursts(const std::string& channel) {
+  const auto waits = [&](const Outgoing& outgoing) {
+    return outgoing.channel == channel && outgoing.burst != burst_under_way_;
+  };
+  std::set<std::int64_t> waiting;
+  for (const Outgoing& outgoing : queue_) {
+    if (waits(outgoing)) waiting.insert(outgoing.burst);
+  }
+  if (waiting.size() < kMaxWaitingBursts) return;
+  const std::int64_t oldest = *waiting.begin();
+  dropped_ += static_cast<std::int64_t>(std::erase_if(queue_, [&](const Outgoing& outgoing) {
+    return waits(outgoing) && outgoing.burst == oldest;
   }));
 }
 

@@ -75,11 +75,11 @@ class Node {
   }
 
   /// Sends the slices of one burst in order, each the bus's burst interval after the one before.
-  /// The first goes at once when nothing is under way. A burst of this channel that has not begun
-  /// when a newer one comes is given up and counted as dropped: old scans do not queue up.
+  /// The first goes at once when nothing is under way. When more than a few bursts of this
+  /// channel wait, the oldest is given up and counted as dropped: old scans do not queue up.
   template <typename Message>
   void PublishBurst(const messages::Channel<Message>& channel, std::vector<Message> burst) {
-    DropWaitingBurst(channel.name);
+    DropOldBursts(channel.name);
     ++burst_id_;
     for (Message& message : burst) {
       Number(channel.name, message);
@@ -138,7 +138,7 @@ class Node {
   void NoteReceived();
   void Track(const std::string& stream, std::int64_t session, std::int64_t sequence);
   void Send(const Outgoing& outgoing);
-  void DropWaitingBurst(const std::string& channel);
+  void DropOldBursts(const std::string& channel);
   void SendNextOfQueue();
   void PublishStatus();
 

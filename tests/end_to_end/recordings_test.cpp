@@ -74,12 +74,17 @@ class RecordingTest : public testing::TestWithParam<Recording> {
     return result.exit_status == 0 ? ReadJson(json) : nlohmann::json();
   }
 
-  // What is late is told, and another run shows what the graph does in time.
+  // A machine that is busy with other things may stop a process for longer than the graph keeps old
+  // scans for; that is told, and another run shows what the graph does when it is let.
   nlohmann::json RunInTime(const std::vector<std::string>& arguments) {
     nlohmann::json figures;
     for (int attempt = 1; attempt <= kAttempts; ++attempt) {
       figures = Run(arguments);
-      if (!figures.is_object() || figures.at("scans_incomplete") == 0) break;
+      if (!figures.is_object()) break;
+      if (figures.at("scans_incomplete") == 0 && figures.at("messages_lost") == 0 &&
+          figures.at("scans_detected") == figures.at("scans_played")) {
+        break;
+      }
       RecordProperty("late_in_attempt_" + std::to_string(attempt), figures.dump());
       std::printf("    attempt %d was late: %s\n", attempt, figures.dump().c_str());
     }

@@ -127,7 +127,7 @@ TEST_F(NodeTest, PacesTheSlicesOfABurstAndNumbersThem) {
   EXPECT_THAT(sequences, ElementsAre(0, 1, 2, 3, 4));
 }
 
-TEST_F(NodeTest, GivesUpABurstThatHasNotBegunWhenANewerOneComes) {
+TEST_F(NodeTest, GivesUpTheOldestBurstThatHasNotBegunWhenMoreThanFourWait) {
   std::vector<std::int64_t> scans;
   runtime_.Subscribe(kFloor.bus, kFloor.name, [&](std::span<const std::byte> bytes) {
     scans.push_back(messages::Decode<floor_t>(bytes)->scan_id);
@@ -138,13 +138,11 @@ TEST_F(NodeTest, GivesUpABurstThatHasNotBegunWhenANewerOneComes) {
     return std::vector<floor_t>(3, message);
   };
 
-  node_.PublishBurst(kFloor, burst_of(1));
-  node_.PublishBurst(kFloor, burst_of(2));
-  node_.PublishBurst(kFloor, burst_of(3));
+  for (std::int64_t scan = 1; scan <= 7; ++scan) node_.PublishBurst(kFloor, burst_of(scan));
   const status_t& status = StatusAfterOneSecond();
 
-  EXPECT_THAT(scans, ElementsAre(1, 1, 1, 3, 3, 3));
-  EXPECT_EQ(status.dropped, 3);
+  EXPECT_THAT(scans, ElementsAre(1, 1, 1, 4, 4, 4, 5, 5, 5, 6, 6, 6, 7, 7, 7));
+  EXPECT_EQ(status.dropped, 2 * 3);
 }
 
 TEST_F(NodeTest, CountsOfHostileSequencesSaturate) {
