@@ -33,6 +33,9 @@ LIBRARIES = {
     r"<(pcl|flann)/": ["common/core/perception", "tests"],
     r"<spdlog": ["common/process/log"],
     r"<cairo": ["tools/plot", "tests/unit/plot"],
+    r"<yaml-cpp": ["common/io/map"],
+    r"<png": ["common/io/map", "tests/unit/io"],
+    r"<zlib": ["common/core/mapping"],
 }
 
 # What pure algorithms never touch.
