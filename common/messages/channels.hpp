@@ -54,6 +54,8 @@ inline constexpr Channel<status_t> kRunStatus{"RUN_STATUS", BusId::kShared};
 inline constexpr Channel<status_t> kPreprocessorStatus{"PREPROCESSOR_STATUS", BusId::kShared};
 inline constexpr Channel<status_t> kClustererStatus{"CLUSTERER_STATUS", BusId::kShared};
 inline constexpr Channel<status_t> kStopGuardStatus{"STOP_GUARD_STATUS", BusId::kShared};
+inline constexpr Channel<status_t> kMapServerStatus{"MAP_SERVER_STATUS", BusId::kShared};
+inline constexpr Channel<status_t> kPoseSourceStatus{"POSE_SOURCE_STATUS", BusId::kShared};
 
 inline constexpr Channel<procman_lcm::deputy_info_t> kPmInfo{"PM_INFO", BusId::kShared};
 inline constexpr Channel<procman_lcm::orders_t> kPmOrders{"PM_ORDERS", BusId::kShared};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/messages/detections.hpp"
 
+#include <algorithm>
+
 namespace clearway::messages {
 namespace {
 
@@ -45,6 +47,23 @@ detection_t ToLcm(const core::Detection& detection, std::int32_t id, std::int32_
     message.hull_y.push_back(vertex.y());
   }
   return message;
+}
+
+core::Detection FromLcm(const detection_t& message) {
+  core::Detection detection;
+  detection.num_points = static_cast<std::uint32_t>(std::max(message.points, 0));
+  detection.centroid = {message.centroid[0], message.centroid[1], message.centroid[2]};
+  detection.nearest = {message.nearest[0], message.nearest[1]};
+  detection.z_min_m = message.z_min;
+  detection.z_max_m = message.z_max;
+  detection.rectangle = {.center = {message.center[0], message.center[1]},
+                         .length_m = message.length_m,
+                         .width_m = message.width_m,
+                         .yaw_rad = message.yaw_rad};
+  for (std::size_t i = 0; i < message.hull_x.size(); ++i) {
+    detection.hull.emplace_back(message.hull_x[i], message.hull_y[i]);
+  }
+  return detection;
 }
 
 std::vector<detections_t> ToDetections(const obstacle_points_t& source,

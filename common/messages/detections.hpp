@@ -18,6 +18,10 @@ namespace clearway::messages {
                                 std::int32_t id,
                                 std::int32_t below_floor);
 
+/// What a detection_t says about its obstacle's place and shape. A negative number of points is
+/// read as 0.
+[[nodiscard]] core::Detection FromLcm(const detection_t& message);
+
 /// The slices of DETECTIONS for one scan, at least one. Stamps and states are those of `source`,
 /// the header of the scan's points. A slice holds as many detections as fit in max_message_bytes,
 /// but at least one. Session, sequence, points_in and processing_us are left to the caller.

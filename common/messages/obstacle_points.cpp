@@ -25,12 +25,13 @@ obstacle_points_t HeaderOf(const core::PreprocessedScan& scan, std::int64_t proc
   message.missing_slices = scan.missing_slices;
   message.motion_state = static_cast<std::int8_t>(scan.deskew);
   message.floor_state = static_cast<std::int8_t>(scan.floor.state);
-  message.map_state = obstacle_points_t::MAP_OFF;
+  message.map_state = static_cast<std::int8_t>(scan.map_state);
+  message.map_epoch = scan.map_version.epoch;
   message.points_in = Int32(counts.in - counts.zero);
   message.points_masked = Int32(counts.in - counts.zero - counts.kept);
   message.points_voxel = Int32(counts.voxels);
   message.points_floor = Int32(counts.above + counts.below);
-  message.points_map = message.points_floor;
+  message.points_map = message.points_floor - Int32(counts.OfMap(core::MapVerdict::kExplained));
   message.processing_us = static_cast<std::int32_t>(processing_us);
   return message;
 }
@@ -83,6 +84,31 @@ floor_t ToFloor(const core::PreprocessedScan& scan) {
   message.rms_m = floor.state == core::FloorState::kConfigured ? -1.0 : floor.fit.rms_m;
   message.below_points = Int32(scan.counts.below);
   return message;
+}
+
+std::vector<removed_points_t> ToRemovedPoints(const core::PreprocessedScan& scan,
+                                              std::size_t max_message_bytes) {
+  const core::PointCloud& cloud = scan.removed_vehicle;
+  const std::size_t capacity = (max_message_bytes - kHeaderBytes) / kBytesPerPoint;
+  const std::size_t count = std::max<std::size_t>(1, (cloud.size() + capacity - 1) / capacity);
+  std::vector<removed_points_t> slices(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t first = cloud.size() * k / count;
+    const std::size_t last = cloud.size() * (k + 1) / count;
+    removed_points_t& slice = slices[k];
+    slice.utime = scan.utime;
+    slice.scan_id = scan.scan_id;
+    slice.slice_index = Int32(k);
+    slice.slice_count = Int32(count);
+    slice.n = Int32(last - first);
+    slice.x = Part(cloud.x, first, last);
+    slice.y = Part(cloud.y, first, last);
+    slice.z = Part(cloud.z, first, last);
+    for (std::size_t i = first; i < last; ++i) {
+      slice.reason.push_back(static_cast<std::int8_t>(scan.removal_reasons[i]));
+    }
+  }
+  return slices;
 }
 
 core::Slice FromLcm(const obstacle_points_t& message) {

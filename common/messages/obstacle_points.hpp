@@ -7,6 +7,7 @@
 
 #include <clearway/floor_t.hpp>
 #include <clearway/obstacle_points_t.hpp>
+#include <clearway/removed_points_t.hpp>
 
 #include "common/core/preprocessing/preprocessor.hpp"
 
@@ -17,6 +18,10 @@ namespace clearway::messages {
 [[nodiscard]] std::vector<obstacle_points_t> ToObstaclePoints(const core::PreprocessedScan& scan,
                                                               std::int64_t processing_us,
                                                               std::size_t max_message_bytes);
+
+/// The slices of REMOVED_POINTS for one scan, at least one.
+[[nodiscard]] std::vector<removed_points_t> ToRemovedPoints(const core::PreprocessedScan& scan,
+                                                            std::size_t max_message_bytes);
 
 /// The FLOOR message of one scan.
 [[nodiscard]] floor_t ToFloor(const core::PreprocessedScan& scan);

@@ -7,11 +7,14 @@
 #include <span>
 
 #include "common/core/geometry/pose_buffer.hpp"
+#include "common/core/mapping/map_builder.hpp"
 #include "common/messages/channels.hpp"
 #include "common/messages/encoding.hpp"
 #include "common/messages/lidar_points.hpp"
+#include "common/messages/map_tiles.hpp"
 #include "common/messages/obstacle_points.hpp"
 #include "common/messages/odometry.hpp"
+#include "common/messages/pose.hpp"
 
 namespace clearway {
 namespace {
@@ -48,6 +51,35 @@ void Use(const odometry_t& message) {
   if (buffer.Add(message.utime, messages::T_odom_vehicle(message)) ==
       core::PoseBuffer::Outcome::kAdded) {
     Require(buffer.Lookup(message.utime).has_value());
+  }
+}
+
+void Use(const pose_t& message) {
+  core::PoseBuffer buffer;
+  buffer.Add(message.utime, messages::T_map_vehicle(message));
+}
+
+void Use(const map_tile_t& message) {
+  const auto tile = messages::FromLcm(message);
+  if (!tile) return;
+  map_tile_t copy = messages::ToLcm(*tile);
+  copy.session = message.session;
+  const auto again = messages::FromLcm(copy);
+  Require(again && again->cells == tile->cells && again->geometry == tile->geometry);
+  // A layer is allocated as a whole: keep the fuzzer within its memory.
+  if (tile->geometry.num_cells() > 1'000'000) return;
+  core::MapAssembler assembler;
+  assembler.Add(*tile);
+  assembler.Add(*tile);
+  Require(assembler.received() <= assembler.count());
+}
+
+void Use(const local_map_t& message) {
+  const auto grid = messages::FromLcm(message);
+  if (!grid || grid->cells.empty()) return;
+  core::MapBuilder builder;
+  if (builder.Add(*grid) == core::MapBuilder::Outcome::kAdded && builder.has_cells()) {
+    Require(builder.Build({}).geometry.IsValid());
   }
 }
 

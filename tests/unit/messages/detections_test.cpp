@@ -146,6 +146,40 @@ TEST(DetectionsTest, ADetectionKeepsItsGeometry) {
   EXPECT_EQ(message.hull_y, (std::vector<float>{0.0F, -1.0F, -2.0F}));
 }
 
+TEST(DetectionsTest, ADetectionComesBackAsItWentOut) {
+  for (const std::size_t vertices : {0, 1, 3, 200}) {
+    core::Detection detection = DetectionWithHull(vertices);
+    detection.num_points = 1234;
+    detection.centroid = {1.0F, -2.0F, 3.0F};
+    detection.nearest = {0.25F, -0.75F};
+    detection.z_min_m = -0.1F;
+    detection.z_max_m = 1.8F;
+    detection.rectangle = {
+        .center = {4.0F, -5.0F}, .length_m = 6.0F, .width_m = 0.5F, .yaw_rad = -0.7F};
+    const auto bytes = Encode(ToLcm(detection, 5, 2));
+
+    const core::Detection back = FromLcm(Decode<detection_t>(bytes).value());
+
+    EXPECT_EQ(back.num_points, detection.num_points);
+    EXPECT_EQ(back.centroid, detection.centroid);
+    EXPECT_EQ(back.nearest, detection.nearest);
+    EXPECT_EQ(back.z_min_m, detection.z_min_m);
+    EXPECT_EQ(back.z_max_m, detection.z_max_m);
+    EXPECT_EQ(back.rectangle.center, detection.rectangle.center);
+    EXPECT_EQ(back.rectangle.length_m, detection.rectangle.length_m);
+    EXPECT_EQ(back.rectangle.width_m, detection.rectangle.width_m);
+    EXPECT_EQ(back.rectangle.yaw_rad, detection.rectangle.yaw_rad);
+    EXPECT_EQ(back.hull, detection.hull);
+  }
+}
+
+TEST(DetectionsTest, ANegativeNumberOfPointsIsReadAsNone) {
+  detection_t message = ToLcm(DetectionWithHull(1), 0, 0);
+  message.points = -1;
+
+  EXPECT_EQ(FromLcm(message).num_points, 0U);
+}
+
 TEST(DetectionsTest, WhatIsNotKnownIsMarkedSo) {
   const detection_t message = ToLcm(DetectionWithHull(1), 0, 0);
 
