@@ -8,10 +8,10 @@
 
 namespace clearway::core {
 
-/// A pose with the time it was measured at.
+/// A pose of the vehicle in a fixed frame (odom or map) with the time it was measured at.
 struct StampedPose {
   std::int64_t utime = 0;  ///< [us since the epoch]
-  Eigen::Isometry3d T_odom_vehicle = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_fixed_vehicle = Eigen::Isometry3d::Identity();
 };
 
 /// R = Rz(yaw) Ry(pitch) Rx(roll): first roll about x, then pitch about y, then yaw about z, all

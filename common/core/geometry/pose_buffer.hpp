@@ -12,7 +12,7 @@
 
 namespace clearway::core {
 
-/// Settings of PoseBuffer. XML element: <odometry>.
+/// Settings of PoseBuffer. XML elements: <odometry>, <pose>.
 struct PoseBufferConfig {
   std::int64_t window_us = 10'000'000;
   std::int64_t max_extrapolation_us = 50'000;
@@ -48,7 +48,8 @@ struct PoseBufferConfig {
   }
 };
 
-/// The last few seconds of T_odom_vehicle, to be asked at any time in between.
+/// The last few seconds of T_fixed_vehicle (fixed: odom for ODOMETRY, map for POSE), to be asked at
+/// any time in between.
 /// Memory is bounded by the window and by kMaxPoses, whichever is less; Add is O(1) amortised,
 /// Lookup O(log n). Thread safety: none.
 class PoseBuffer {
@@ -65,9 +66,9 @@ class PoseBuffer {
 
   explicit PoseBuffer(const PoseBufferConfig& config = {}) : config_(config) {}
 
-  Outcome Add(std::int64_t utime, const Eigen::Isometry3d& T_odom_vehicle);
+  Outcome Add(std::int64_t utime, const Eigen::Isometry3d& T_fixed_vehicle);
 
-  /// T_odom_vehicle at `utime`: between two neighbours by Interpolate(); after the newest pose by
+  /// T_fixed_vehicle at `utime`: between two neighbours by Interpolate(); after the newest pose by
   /// carrying on the motion between the last two at constant speed (their difference, not the
   /// message's twist: one source of truth), for max_extrapolation_us at most. Nothing before the
   /// oldest pose, inside a gap longer than max_gap_us, and further ahead.

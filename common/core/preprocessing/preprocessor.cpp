@@ -49,9 +49,12 @@ Preprocessor::Preprocessor(const PreprocessorConfig& config, const VehicleConfig
       body_(vehicle.body),
       voxel_grid_(MakeVoxelGrid(config.backend, config.voxel_grid)),
       floor_finder_(MakeFloorFinder(config.backend, config.floor)),
-      floor_tracker_(config.floor) {
+      floor_tracker_(config.floor),
+      map_filter_(config.map_filter, vehicle.Footprint()),
+      local_map_builder_(config.local_map) {
   for (const SensorConfig& sensor : vehicle.sensors) {
     const Eigen::Isometry3d T_vehicle_sensor = sensor.T_vehicle_sensor();
+    sensor_origins_vehicle_.push_back(T_vehicle_sensor.translation());
     sensors_.push_back({T_vehicle_sensor.linear().cast<float>(),
                         T_vehicle_sensor.translation().cast<float>(),
                         static_cast<float>(sensor.min_range_m * sensor.min_range_m),
@@ -61,7 +64,9 @@ Preprocessor::Preprocessor(const PreprocessorConfig& config, const VehicleConfig
 
 Preprocessor::~Preprocessor() = default;
 
-PreprocessedScan Preprocessor::Process(const AssembledScan& scan, const PoseBuffer* odometry) {
+PreprocessedScan Preprocessor::Process(const AssembledScan& scan,
+                                       const Surroundings& surroundings) {
+  const PoseBuffer* const odometry = surroundings.odometry;
   PreprocessedScan result = Header(scan);
   T_local_vehicle_end_ = Eigen::Isometry3d::Identity();
   std::optional<MotionTrack> track;
@@ -82,9 +87,12 @@ PreprocessedScan Preprocessor::Process(const AssembledScan& scan, const PoseBuff
   result.counts.sparse = voxels.num_sparse;
   result.counts.voxels = voxels.cloud.size();
   Transform(T_local_vehicle_end_.inverse(), voxels.cloud);
-  SplitFloor(voxels.cloud, result);
-  // The map filter takes its place here, after the floor: it will get the points in `map` and mark
-  // or remove those that the static map explains.
+  const PointCloud floor_vehicle = SplitFloor(voxels.cloud, result);
+  UseMap(surroundings, floor_vehicle, result);
+  if (config_.removed_points) {
+    result.removed_vehicle.Append(floor_vehicle);
+    result.removal_reasons.resize(result.removed_vehicle.size(), RemovalReason::kFloor);
+  }
   return result;
 }
 
@@ -153,7 +161,7 @@ bool Preprocessor::IsNoise(std::uint8_t tag) const {
   return (by_intensity >= 1 && by_intensity <= limit) || (by_position >= 1 && by_position <= limit);
 }
 
-void Preprocessor::SplitFloor(const PointCloud& cloud_vehicle, PreprocessedScan& result) {
+PointCloud Preprocessor::SplitFloor(const PointCloud& cloud_vehicle, PreprocessedScan& result) {
   result.floor = floor_tracker_.Update(result.utime, floor_finder_->Find(cloud_vehicle));
   const FloorSplit split =
       SplitByFloor(cloud_vehicle, result.floor.fit.plane_vehicle, config_.floor);
@@ -165,6 +173,71 @@ void Preprocessor::SplitFloor(const PointCloud& cloud_vehicle, PreprocessedScan&
   result.flags.resize(split.above.size() + split.below.size(), kFlagBelowFloor);
   for (const std::uint32_t i : split.above) result.obstacles_vehicle.AddFrom(cloud_vehicle, i);
   for (const std::uint32_t i : split.below) result.obstacles_vehicle.AddFrom(cloud_vehicle, i);
+  PointCloud floor_vehicle;
+  floor_vehicle.Reserve(split.floor.size());
+  for (const std::uint32_t i : split.floor) floor_vehicle.AddFrom(cloud_vehicle, i);
+  return floor_vehicle;
+}
+
+void Preprocessor::UseMap(const Surroundings& surroundings,
+                          const PointCloud& floor_vehicle,
+                          PreprocessedScan& result) {
+  if (!config_.map_filter.enabled && !config_.local_map.enabled) return;
+  const FoundPose pose = FindPose(surroundings, result.utime);
+  if (config_.local_map.enabled && pose.T_map_vehicle) {
+    result.local_map = local_map_builder_.Build({.obstacles_vehicle = result.obstacles_vehicle,
+                                                 .floor_vehicle = floor_vehicle,
+                                                 .sensor_origins_vehicle = sensor_origins_vehicle_,
+                                                 .T_map_vehicle = *pose.T_map_vehicle});
+  }
+  if (!config_.map_filter.enabled) return;
+  if (surroundings.map == nullptr) {
+    result.map_state = MapState::kNoMap;
+  } else if (!pose.T_map_vehicle) {
+    result.map_state = pose.why_not;
+  } else {
+    ApplyMap(*surroundings.map, *pose.T_map_vehicle, result);
+  }
+}
+
+Preprocessor::FoundPose Preprocessor::FindPose(const Surroundings& surroundings,
+                                               std::int64_t utime) const {
+  if (surroundings.is_pose_lost) return {std::nullopt, MapState::kPoseLost};
+  const std::optional<std::int64_t> newest_utime =
+      surroundings.pose == nullptr ? std::nullopt : surroundings.pose->newest_utime();
+  if (!newest_utime) return {std::nullopt, MapState::kNoPose};
+  if (utime - *newest_utime > config_.pose.max_extrapolation_us) {
+    return {std::nullopt, MapState::kPoseOld};
+  }
+  return {surroundings.pose->Lookup(utime), MapState::kNoPose};
+}
+
+void Preprocessor::ApplyMap(const StaticMap& map,
+                            const Eigen::Isometry3d& T_map_vehicle,
+                            PreprocessedScan& result) {
+  const std::vector<MapVerdict> verdicts =
+      map_filter_.Judge(result.obstacles_vehicle, T_map_vehicle, map);
+  PointCloud kept_vehicle;
+  std::vector<std::uint8_t> kept_flags;
+  kept_vehicle.Reserve(verdicts.size());
+  for (std::size_t i = 0; i < verdicts.size(); ++i) {
+    ++result.counts.by_map[static_cast<std::size_t>(verdicts[i])];
+    if (verdicts[i] != MapVerdict::kExplained) {
+      kept_vehicle.AddFrom(result.obstacles_vehicle, i);
+      kept_flags.push_back(result.flags[i]);
+    } else if (config_.removed_points) {
+      result.removed_vehicle.AddFrom(result.obstacles_vehicle, i);
+      result.removal_reasons.push_back(RemovalReason::kMap);
+    }
+  }
+  result.obstacles_vehicle = std::move(kept_vehicle);
+  result.flags = std::move(kept_flags);
+  result.map_version = map.version;
+  const std::size_t on_map =
+      result.counts.OfMap(MapVerdict::kExplained) + result.counts.OfMap(MapVerdict::kUnexplained);
+  const std::size_t outside =
+      result.counts.OfMap(MapVerdict::kOffMap) + result.counts.OfMap(MapVerdict::kUnknown);
+  result.map_state = outside > on_map ? MapState::kOutsideMap : MapState::kFiltered;
 }
 
 }  // namespace clearway::core

@@ -125,7 +125,7 @@ TEST_P(DeskewTest, PutsAWallThatIsSeenFromAMovingSensorBackIntoOnePlane) {
   const PoseBuffer odometry = Odometry(motion);
   Preprocessor preprocessor({}, vehicle);
 
-  const PreprocessedScan result = preprocessor.Process(scan, &odometry);
+  const PreprocessedScan result = preprocessor.Process(scan, {.odometry = &odometry});
 
   EXPECT_EQ(result.deskew, DeskewState::kDeskewed);
   EXPECT_EQ(result.num_undeskewed, 0U);
@@ -145,7 +145,7 @@ TEST_P(DeskewTest, KeepsEveryPointAndSaysSoWithoutOdometry) {
   Preprocessor preprocessor({}, vehicle);
 
   for (const PoseBuffer* odometry : {static_cast<const PoseBuffer*>(nullptr), &empty}) {
-    const PreprocessedScan result = preprocessor.Process(scan, odometry);
+    const PreprocessedScan result = preprocessor.Process(scan, {.odometry = odometry});
 
     EXPECT_EQ(result.deskew, DeskewState::kNoOdometry);
     EXPECT_EQ(result.counts.kept, 3000U);
@@ -164,10 +164,10 @@ TEST_P(DeskewTest, GivesTheSameCellsFarFromTheOriginOfOdom) {
   const PoseBuffer near_odometry = Odometry(near);
   const PoseBuffer far_odometry = Odometry(far);
 
-  const PreprocessedScan a =
-      preprocessor.Process(MakeScan(Measure(Wall(near.start_odom), vehicle, near)), &near_odometry);
-  const PreprocessedScan b =
-      preprocessor.Process(MakeScan(Measure(Wall(far.start_odom), vehicle, far)), &far_odometry);
+  const PreprocessedScan a = preprocessor.Process(
+      MakeScan(Measure(Wall(near.start_odom), vehicle, near)), {.odometry = &near_odometry});
+  const PreprocessedScan b = preprocessor.Process(
+      MakeScan(Measure(Wall(far.start_odom), vehicle, far)), {.odometry = &far_odometry});
 
   EXPECT_LT(WorstOffWall(b, far), 5e-4);
   // A point on a cell's border may fall to either side.
@@ -189,7 +189,7 @@ TEST(Deskew, MattersForTheTestAbove) {
   Preprocessor preprocessor({}, vehicle);
 
   const PreprocessedScan result =
-      preprocessor.Process(MakeScan(Measure(Wall({0, 0, 0}), vehicle, motion)), nullptr);
+      preprocessor.Process(MakeScan(Measure(Wall({0, 0, 0}), vehicle, motion)), {});
 
   EXPECT_GT(WorstOffWall(result, motion), 0.1);
 }
@@ -203,7 +203,7 @@ TEST(Deskew, TakesPointsOfUnknownTimeAsMeasuredAtTheEndAndCountsThem) {
   const PoseBuffer odometry = Odometry(motion, 50'000);
   Preprocessor preprocessor({}, vehicle);
 
-  const PreprocessedScan result = preprocessor.Process(MakeScan(cloud), &odometry);
+  const PreprocessedScan result = preprocessor.Process(MakeScan(cloud), {.odometry = &odometry});
 
   EXPECT_EQ(result.deskew, DeskewState::kDeskewed);
   EXPECT_EQ(result.counts.kept, 3000U);
@@ -219,7 +219,7 @@ TEST(Deskew, LeavesTheScanOfAStationarySensorAsItIs) {
   Preprocessor preprocessor({}, vehicle);
 
   const PreprocessedScan result =
-      preprocessor.Process(MakeScan(Measure(Wall({0, 0, 0}), vehicle, {})), &moving);
+      preprocessor.Process(MakeScan(Measure(Wall({0, 0, 0}), vehicle, {})), {.odometry = &moving});
 
   EXPECT_EQ(result.deskew, DeskewState::kStationary);
   EXPECT_EQ(result.num_undeskewed, 0U);
@@ -291,7 +291,7 @@ TEST(Preprocessor, CountsEveryPointOnce) {
   cloud.Add({5.5F, 0.0F, 1.0F});
   Preprocessor preprocessor(config, vehicle);
 
-  const PreprocessedScan result = preprocessor.Process(MakeScan(cloud), nullptr);
+  const PreprocessedScan result = preprocessor.Process(MakeScan(cloud), {});
 
   EXPECT_EQ(result.counts.in, cloud.size());
   EXPECT_EQ(Sum(result.counts), cloud.size());
@@ -323,7 +323,7 @@ TEST(Preprocessor, RemovesTheFloorAndMarksWhatLiesBelowIt) {
   }
   Preprocessor preprocessor({}, vehicle);
 
-  const PreprocessedScan result = preprocessor.Process(MakeScan(cloud), nullptr);
+  const PreprocessedScan result = preprocessor.Process(MakeScan(cloud), {});
 
   EXPECT_EQ(result.floor.state, FloorState::kFound);
   EXPECT_EQ(result.counts.voxels, result.counts.floor + result.counts.above + result.counts.below);
@@ -343,7 +343,7 @@ TEST(Preprocessor, AnswersAnEmptyScanWithAnEmptyResultOfTheSameStamp) {
   scan.complete = false;
   scan.missing_sensors = {0};
 
-  const PreprocessedScan result = preprocessor.Process(scan, nullptr);
+  const PreprocessedScan result = preprocessor.Process(scan, {});
 
   EXPECT_TRUE(result.obstacles_vehicle.empty());
   EXPECT_EQ(result.utime, scan.utime_end);
@@ -363,9 +363,9 @@ TEST(Preprocessor, MergesSensorsThatSeeTheSameWallFromTwoPlaces) {
       {true, kEpoch_us, kEpoch_us + kScan_us, 1, 0, Measure(Wall({0, 0, 0}), second, motion)});
   Preprocessor preprocessor({}, vehicle);
 
-  const PreprocessedScan both = preprocessor.Process(scan, &odometry);
+  const PreprocessedScan both = preprocessor.Process(scan, {.odometry = &odometry});
   scan.sensors.pop_back();
-  const PreprocessedScan one = preprocessor.Process(scan, &odometry);
+  const PreprocessedScan one = preprocessor.Process(scan, {.odometry = &odometry});
 
   EXPECT_EQ(both.counts.kept, 2 * one.counts.kept);
   EXPECT_LT(WorstOffWall(both, motion), 5e-4);
@@ -381,9 +381,9 @@ TEST(Preprocessor, GivesTheSameResultForTheSameInput) {
   Preprocessor first({}, vehicle);
   Preprocessor second({}, vehicle);
 
-  const PreprocessedScan a = first.Process(scan, &odometry);
-  (void)second.Process(MakeScan({}), nullptr);
-  const PreprocessedScan b = second.Process(scan, &odometry);
+  const PreprocessedScan a = first.Process(scan, {.odometry = &odometry});
+  (void)second.Process(MakeScan({}), {});
+  const PreprocessedScan b = second.Process(scan, {.odometry = &odometry});
 
   EXPECT_EQ(a.obstacles_vehicle.x, b.obstacles_vehicle.x);
   EXPECT_EQ(a.obstacles_vehicle.z, b.obstacles_vehicle.z);
