@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
+#include <string>
+
 #include "common/config/config.hpp"
+#include "common/core/geometry/pose_source.hpp"
 #include "common/core/guard/stop_guard_config.hpp"
 #include "common/core/perception/clustering/clusterer.hpp"
 #include "common/core/preprocessing/preprocessor.hpp"
@@ -23,6 +27,19 @@ struct ClustererConfig {
   }
 };
 
+/// Settings of the map server. XML element: <map_server>.
+struct MapServerConfig {
+  std::string file;
+
+  template <typename Self, typename Visitor>
+  static void Visit(Self& self, Visitor& visitor) {
+    visitor.Text("file",
+                 self.file,
+                 "The YAML file of a Nav2 map; a relative path starts at this configuration's "
+                 "folder. Empty: no map is served.");
+  }
+};
+
 /// The one configuration file of a graph: each process takes its own element and the shared ones,
 /// and refuses the file when anything in it is wrong. XML element: <clearway>.
 struct GraphConfig {
@@ -32,6 +49,16 @@ struct GraphConfig {
   core::PreprocessorConfig preprocessor;
   ClustererConfig clusterer;
   core::StopGuardConfig stop_guard;
+  MapServerConfig map_server;
+  core::PoseSourceConfig pose_source;
+
+  /// Where relative paths of the configuration start: the folder of its file. Not a value of it.
+  std::filesystem::path folder;
+
+  /// The map that is to be served; empty when none is.
+  [[nodiscard]] std::filesystem::path MapFile() const {
+    return map_server.file.empty() ? std::filesystem::path() : folder / map_server.file;
+  }
 
   template <typename Self, typename Visitor>
   static void Visit(Self& self, Visitor& visitor) {
@@ -41,6 +68,8 @@ struct GraphConfig {
     visitor.Group("preprocessor", self.preprocessor, "From raw points to obstacle points.");
     visitor.Group("clusterer", self.clusterer, "From obstacle points to detections.");
     visitor.Group("stop_guard", self.stop_guard, "Whether the robot may move.");
+    visitor.Group("map_server", self.map_server, "Which map is known.");
+    visitor.Group("pose_source", self.pose_source, "POSE without a localization.");
   }
 };
 

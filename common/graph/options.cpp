@@ -43,7 +43,10 @@ config::LoadResult<GraphConfig> LoadConfig(const Options& options) {
     overrides.push_back("buses.local.url=" + options.lcm_url);
     overrides.push_back("buses.shared.url=" + options.lcm_url);
   }
-  return config::Load<GraphConfig>(options.config_path, overrides);
+  config::LoadResult<GraphConfig> config =
+      config::Load<GraphConfig>(options.config_path, overrides);
+  config.root.folder = options.config_path.parent_path();
+  return config;
 }
 
 bool AnsweredByConfig(const Options& options, const config::LoadResult<GraphConfig>& config) {

@@ -2,6 +2,7 @@
 #include "common/process/live_runtime.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -133,6 +134,16 @@ std::int64_t LiveRuntime::NewSession() {
   std::random_device random;
   return std::uniform_int_distribution<std::int64_t>(
       1, std::numeric_limits<std::int64_t>::max())(random);
+}
+
+std::string LiveRuntime::HostName() const {
+  std::array<char, 256> name{};
+  gethostname(name.data(), name.size() - 1);
+  return name.data();
+}
+
+int LiveRuntime::ProcessId() const {
+  return getpid();
 }
 
 void LiveRuntime::Publish(messages::BusId bus,

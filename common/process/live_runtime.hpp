@@ -39,6 +39,8 @@ class LiveRuntime final : public Runtime {
   [[nodiscard]] std::int64_t MonotonicUs() const override;
   [[nodiscard]] std::int64_t UtimeNow() const override;
   [[nodiscard]] std::int64_t NewSession() override;
+  [[nodiscard]] std::string HostName() const override;
+  [[nodiscard]] int ProcessId() const override;
   void Publish(messages::BusId bus,
                const std::string& channel,
                std::span<const std::byte> bytes) override;

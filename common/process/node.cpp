@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "common/process/node.hpp"
 
-#include <array>
 #include <limits>
 #include <set>
-#include <unistd.h>
 
 #include "common/process/log.hpp"
 
@@ -20,12 +18,6 @@ constexpr std::size_t kMaxWaitingBursts = 4;
 std::int64_t AddCounts(std::int64_t a, std::int64_t b) {
   constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
   return a > kMost - b ? kMost : a + b;
-}
-
-std::string HostName() {
-  std::array<char, 256> name{};
-  gethostname(name.data(), name.size() - 1);
-  return name.data();
 }
 
 }  // namespace
@@ -102,8 +94,8 @@ void Node::PublishStatus() {
   status_t status;
   status.utime = runtime_.UtimeNow();
   status.process = identity_.process;
-  status.host = HostName();
-  status.pid = getpid();
+  status.host = runtime_.HostName();
+  status.pid = runtime_.ProcessId();
   status.version = identity_.version;
   status.config_digest = identity_.config_digest;
   status.state = state_.code;

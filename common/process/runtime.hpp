@@ -31,6 +31,10 @@ class Runtime {
   /// A number that tells this life of a process from all others; positive.
   [[nodiscard]] virtual std::int64_t NewSession() = 0;
 
+  /// Where the process runs, for its status: the host's name and the process id.
+  [[nodiscard]] virtual std::string HostName() const = 0;
+  [[nodiscard]] virtual int ProcessId() const = 0;
+
   /// Sends bytes. Throws std::runtime_error when the bus has never taken anything; what it refuses
   /// later is lost and counted by SendFailures().
   virtual void Publish(messages::BusId bus,

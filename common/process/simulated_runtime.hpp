@@ -36,6 +36,8 @@ class SimulatedRuntime final : public Runtime {
   [[nodiscard]] std::int64_t MonotonicUs() const override { return now_us_; }
   [[nodiscard]] std::int64_t UtimeNow() const override { return now_us_; }
   [[nodiscard]] std::int64_t NewSession() override { return next_session_++; }
+  [[nodiscard]] std::string HostName() const override { return "simulated"; }
+  [[nodiscard]] int ProcessId() const override { return 0; }
   void Publish(messages::BusId bus,
                const std::string& channel,
                std::span<const std::byte> bytes) override;

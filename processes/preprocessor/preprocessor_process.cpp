@@ -4,8 +4,10 @@
 #include <algorithm>
 
 #include "common/messages/lidar_points.hpp"
+#include "common/messages/map_tiles.hpp"
 #include "common/messages/obstacle_points.hpp"
 #include "common/messages/odometry.hpp"
+#include "common/messages/pose.hpp"
 #include "common/process/log.hpp"
 
 namespace clearway {
@@ -13,11 +15,18 @@ namespace {
 
 using messages::channels::kFloor;
 using messages::channels::kLidarPoints;
+using messages::channels::kLocalMap;
 using messages::channels::kObstaclePoints;
 using messages::channels::kOdometry;
+using messages::channels::kPose;
+using messages::channels::kPoseStatus;
+using messages::channels::kRemovedPoints;
 
 // Unknown names come from outside: remember a few, so that each is told once.
 constexpr std::size_t kMaxUnknownNames = 16;
+
+// POSE out of order within this time is a second publisher of it [us].
+constexpr std::int64_t kTwoPublishersUs = 1'000'000;
 
 std::string Quoted(const std::string& name) {
   std::string text = name.substr(0, core::SensorConfig::kMaxNameLength);
@@ -31,18 +40,27 @@ std::string Quoted(const std::string& name) {
 PreprocessorProcess::PreprocessorProcess(const core::PreprocessorConfig& config,
                                          const core::VehicleConfig& vehicle,
                                          process::Node& node)
-    : vehicle_(vehicle),
+    : config_(config),
+      vehicle_(vehicle),
       node_(node),
       input_(node,
              config.assembler,
              static_cast<int>(vehicle.sensors.size()),
              [this](const core::AssembledScan& scan) { ProcessScan(scan); }),
       preprocessor_(config, vehicle),
-      odometry_(config.odometry) {
+      odometry_(config.odometry),
+      pose_(config.pose) {
   node_.Subscribe<lidar_points_t>(kLidarPoints, [this](const auto& m) { OnLidarPoints(m); });
   if (!vehicle_.stationary) {
     node_.Subscribe<odometry_t>(kOdometry, [this](const auto& m) { OnOdometry(m); });
   }
+  if (config_.map_filter.enabled || config_.local_map.enabled) {
+    node_.Subscribe<pose_t>(kPose, [this](const auto& m) { OnPose(m); });
+    node_.Subscribe<pose_status_t>(kPoseStatus, [this](const auto& m) {
+      is_pose_lost_ = m.state == pose_status_t::STATE_LOST;
+    });
+  }
+  if (config_.map_filter.enabled) map_client_.emplace(node_, "preprocessor");
   node_.BeforeStatus([this] { Refresh(); });
   Refresh();
 }
@@ -64,9 +82,31 @@ void PreprocessorProcess::OnOdometry(const odometry_t& message) {
   if (outcome == core::PoseBuffer::Outcome::kInvalid) node_.CountInvalid();
 }
 
+void PreprocessorProcess::OnPose(const pose_t& message) {
+  using Outcome = core::PoseBuffer::Outcome;
+  const Outcome outcome = pose_.Add(message.utime, messages::T_map_vehicle(message));
+  if (outcome == Outcome::kInvalid) node_.CountInvalid();
+  if (outcome != Outcome::kOutOfOrder) return;
+  ++poses_out_of_order_;
+  pose_out_of_order_us_ = node_.runtime().MonotonicUs();
+}
+
+// Two publishers of POSE are believed neither.
+bool PreprocessorProcess::HasTwoPosePublishers() const {
+  return pose_out_of_order_us_ &&
+         node_.runtime().MonotonicUs() - *pose_out_of_order_us_ <= kTwoPublishersUs;
+}
+
+core::Surroundings PreprocessorProcess::CurrentSurroundings() const {
+  return {.odometry = &odometry_,
+          .pose = &pose_,
+          .is_pose_lost = is_pose_lost_ || HasTwoPosePublishers(),
+          .map = map_client_ ? map_client_->map() : nullptr};
+}
+
 void PreprocessorProcess::ProcessScan(const core::AssembledScan& scan) {
   const std::int64_t begin_us = node_.runtime().MonotonicUs();
-  core::PreprocessedScan result = preprocessor_.Process(scan, &odometry_);
+  core::PreprocessedScan result = preprocessor_.Process(scan, CurrentSurroundings());
   const std::int64_t duration_us = node_.runtime().MonotonicUs() - begin_us;
 
   node_.Publish(kFloor, messages::ToFloor(result));
@@ -75,14 +115,50 @@ void PreprocessorProcess::ProcessScan(const core::AssembledScan& scan) {
       messages::ToObstaclePoints(
           result, duration_us, node_.runtime().MaxMessageBytes(kObstaclePoints.bus)));
 
+  PublishCompanions(result);
+
   node_.AddProcessingTime(duration_us);
   result.obstacles_vehicle.Clear();
+  result.removed_vehicle.Clear();
+  result.local_map.reset();
   last_ = std::move(result);
   Refresh();
 }
 
-void PreprocessorProcess::Refresh() {
+void PreprocessorProcess::PublishCompanions(const core::PreprocessedScan& scan) {
+  const process::Runtime& runtime = node_.runtime();
+  if (scan.local_map) {
+    node_.PublishBurst(kLocalMap,
+                       messages::ToLocalMap(*scan.local_map,
+                                            {.utime = scan.utime, .scan_id = scan.scan_id},
+                                            runtime.MaxMessageBytes(kLocalMap.bus)));
+  }
+  if (config_.removed_points) {
+    node_.PublishBurst(
+        kRemovedPoints,
+        messages::ToRemovedPoints(scan, runtime.MaxMessageBytes(kRemovedPoints.bus)));
+  }
+}
+
+void PreprocessorProcess::SetCounters() {
   input_.SetCounters();
+  if (!map_client_) return;
+  map_client_->SetCounters();
+  node_.SetCounter("poses_out_of_order", poses_out_of_order_);
+  if (!last_) return;
+  using core::MapVerdict;
+  for (const auto& [name, verdict] : {std::pair("points_explained", MapVerdict::kExplained),
+                                      std::pair("points_unexplained", MapVerdict::kUnexplained),
+                                      std::pair("points_unknown_cell", MapVerdict::kUnknown),
+                                      std::pair("points_off_map", MapVerdict::kOffMap),
+                                      std::pair("points_out_of_band", MapVerdict::kOutOfBand),
+                                      std::pair("points_near", MapVerdict::kNear)}) {
+    node_.SetCounter(name, static_cast<std::int64_t>(last_->counts.OfMap(verdict)));
+  }
+}
+
+void PreprocessorProcess::Refresh() {
+  SetCounters();
   node_.SetState(CurrentState());
 }
 
@@ -113,7 +189,33 @@ process::State PreprocessorProcess::CurrentState() const {
                 ? "no floor found in the last scan: using the last good one"
                 : "no floor found: using z = 0 of the vehicle"};
   }
+  const std::string map_trouble = MapTrouble();
+  if (!map_trouble.empty()) return {status_t::STATE_DEGRADED, true, map_trouble};
   return {status_t::STATE_OK, true, "working"};
+}
+
+std::string PreprocessorProcess::MapTrouble() const {
+  const std::string nothing_removed = "the map filter removes nothing: ";
+  switch (last_->map_state) {
+    case core::MapState::kOff:
+    case core::MapState::kFiltered:
+      return {};
+    case core::MapState::kNoMap: {
+      const std::string trouble = map_client_->Trouble();
+      return nothing_removed + (trouble.empty() ? "the map has only just come" : trouble);
+    }
+    case core::MapState::kNoPose:
+      return nothing_removed + "no POSE for the time of the scan";
+    case core::MapState::kPoseOld:
+      return nothing_removed + "the newest POSE is older than pose.max_extrapolation_ms";
+    case core::MapState::kPoseLost:
+      return nothing_removed + (HasTwoPosePublishers() ? "POSE has two publishers"
+                                                       : "POSE_STATUS says that the pose is lost");
+    case core::MapState::kOutsideMap:
+      break;
+  }
+  return "most points lie off the map or in unknown cells, and are kept: is the pose right, and "
+         "the map that of this place?";
 }
 
 }  // namespace clearway

@@ -8,12 +8,14 @@
 #include "common/core/geometry/pose_buffer.hpp"
 #include "common/core/preprocessing/preprocessor.hpp"
 #include "common/core/vehicle.hpp"
+#include "common/process/map_client.hpp"
 #include "common/process/node.hpp"
 #include "common/process/scan_input.hpp"
 
 namespace clearway {
 
-/// LIDAR_POINTS, ODOMETRY -> OBSTACLE_POINTS, FLOOR. See README.md beside this file.
+/// LIDAR_POINTS, ODOMETRY, POSE, MAP -> OBSTACLE_POINTS, FLOOR, LOCAL_MAP. See README.md beside
+/// this file.
 class PreprocessorProcess {
  public:
   PreprocessorProcess(const core::PreprocessorConfig& config,
@@ -23,15 +25,27 @@ class PreprocessorProcess {
  private:
   void OnLidarPoints(const lidar_points_t& message);
   void OnOdometry(const odometry_t& message);
+  void OnPose(const pose_t& message);
   void ProcessScan(const core::AssembledScan& scan);
+  void PublishCompanions(const core::PreprocessedScan& scan);
   void Refresh();
+  void SetCounters();
+  [[nodiscard]] core::Surroundings CurrentSurroundings() const;
+  [[nodiscard]] bool HasTwoPosePublishers() const;
   [[nodiscard]] process::State CurrentState() const;
+  [[nodiscard]] std::string MapTrouble() const;
 
+  core::PreprocessorConfig config_;
   core::VehicleConfig vehicle_;
   process::Node& node_;
   process::ScanInput input_;
   core::Preprocessor preprocessor_;
   core::PoseBuffer odometry_;
+  core::PoseBuffer pose_;
+  bool is_pose_lost_ = false;
+  std::int64_t poses_out_of_order_ = 0;
+  std::optional<std::int64_t> pose_out_of_order_us_;
+  std::optional<process::MapClient> map_client_;
   std::set<std::string> unknown_sensors_;
   std::optional<core::PreprocessedScan> last_;  // Without its points.
 };

@@ -44,6 +44,8 @@ class RelayRuntime final : public process::Runtime {
   [[nodiscard]] std::int64_t MonotonicUs() const override { return inner_.MonotonicUs(); }
   [[nodiscard]] std::int64_t UtimeNow() const override { return inner_.UtimeNow(); }
   [[nodiscard]] std::int64_t NewSession() override { return inner_.NewSession(); }
+  [[nodiscard]] std::string HostName() const override { return inner_.HostName(); }
+  [[nodiscard]] int ProcessId() const override { return inner_.ProcessId(); }
   void Subscribe(messages::BusId bus, const std::string& channel, BytesHandler handler) override {
     inner_.Subscribe(bus, channel, std::move(handler));
   }
