@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+
+#include <CLI/CLI.hpp>
+
+#include "common/graph/options.hpp"
+#include "common/process/log.hpp"
+#include "tools/map/show.hpp"
+#include "tools/map/subcommand.hpp"
+
+namespace clearway::map_tool {
+namespace {
+
+struct ShowArguments {
+  std::filesystem::path map;
+  std::filesystem::path output;
+  std::filesystem::path json;
+};
+
+void WriteFile(const std::filesystem::path& path, const std::string& text) {
+  errno = 0;
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) {
+    throw std::runtime_error(path.string() +
+                             ": cannot write: " + std::generic_category().message(errno));
+  }
+}
+
+int RunShow(const ShowArguments& arguments) {
+  const io::LoadedMap map = io::LoadMap(arguments.map);
+  for (const std::string& key : map.description.ignored_keys) {
+    process::LogWarning(arguments.map.string() + ": key " + io::Quoted(key) + " is ignored");
+  }
+  std::fputs(FormatLine(map).c_str(), stdout);
+  DrawMap(map, arguments.map, arguments.output);
+  if (!arguments.json.empty()) WriteFile(arguments.json, FormatJson(map));
+  return graph::kExitOk;
+}
+
+}  // namespace
+
+Subcommand AddShow(CLI::App& program) {
+  const auto arguments = std::make_shared<ShowArguments>();
+  CLI::App* show = program.add_subcommand("show", "Draws a map as a picture");
+  show->add_option("map", arguments->map, "YAML file of a Nav2 or ROS map")
+      ->required()
+      ->type_name("MAP.yaml");
+  show->add_option("--output", arguments->output, "Write the picture to this PNG file")
+      ->required()
+      ->type_name("FILE");
+  show->add_option("--json", arguments->json, "Write the figures to this file")->type_name("FILE");
+  return {show, [arguments] { return RunShow(*arguments); }};
+}
+
+}  // namespace clearway::map_tool
