@@ -24,6 +24,8 @@ function(clearway_lcm_types target)
       DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${file} ${CLEARWAY_HARDEN_SCRIPT}
       COMMENT "lcm-gen ${file}" VERBATIM)
     list(APPEND headers ${header})
+    set_property(GLOBAL APPEND PROPERTY CLEARWAY_LCM_FILES ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+    set_property(GLOBAL APPEND PROPERTY CLEARWAY_LCM_TYPES ${ARG_PACKAGE}/${type})
   endforeach()
   add_custom_target(${target}_generate DEPENDS ${headers})
   add_library(${target} INTERFACE)
@@ -31,4 +33,36 @@ function(clearway_lcm_types target)
   # SYSTEM: generated code is clean under -Wall -Wextra only.
   target_include_directories(${target} SYSTEM INTERFACE ${out})
   target_link_libraries(${target} INTERFACE lcm::library)
+endfunction()
+
+# clearway_types_jar(): Java bindings of all types so far in one jar; with it lcm-spy decodes
+# messages. Target types_jar, part of the ordinary build where a JDK and LCM's jar are.
+function(clearway_types_jar)
+  find_program(JAVAC_PROGRAM javac)
+  find_program(JAR_PROGRAM jar)
+  find_file(LCM_JAR lcm.jar PATHS /usr/share/java /usr/local/share/java)
+  if(NOT JAVAC_PROGRAM OR NOT JAR_PROGRAM OR NOT LCM_JAR)
+    message(STATUS "types_jar (for lcm-spy) is left out: it needs javac, jar and lcm.jar, in "
+                   "Debian's default-jdk-headless and liblcm-java")
+    return()
+  endif()
+  get_property(files GLOBAL PROPERTY CLEARWAY_LCM_FILES)
+  get_property(types GLOBAL PROPERTY CLEARWAY_LCM_TYPES)
+  set(sources ${types})
+  list(TRANSFORM sources APPEND .java)
+  set(work ${CMAKE_CURRENT_BINARY_DIR}/java)
+  set(folder ${PROJECT_BINARY_DIR}/share/java)
+  set(jar ${folder}/clearway-types.jar)
+  # Java 8 is what Debian's lcm.jar is compiled for. The folder is emptied so that no type outlives
+  # its removal.
+  add_custom_command(OUTPUT ${jar}
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${work}
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${work}/classes ${folder}
+    COMMAND ${LCM_GEN_PROGRAM} -j --jpath ${work} ${files}
+    COMMAND ${CMAKE_COMMAND} -E chdir ${work}
+            ${JAVAC_PROGRAM} --release 8 -Xlint:-options -cp ${LCM_JAR} -d classes ${sources}
+    COMMAND ${JAR_PROGRAM} cf ${jar} -C ${work}/classes .
+    DEPENDS ${files} COMMENT "clearway-types.jar" VERBATIM)
+  add_custom_target(types_jar ALL DEPENDS ${jar})
+  install(FILES ${jar} DESTINATION ${CMAKE_INSTALL_DATADIR}/java)
 endfunction()
