@@ -20,8 +20,8 @@ constexpr std::int64_t kDrainTimeoutUs = 3'000'000;
 constexpr std::int64_t kLiveSilenceUs = 3'000'000;
 constexpr int kStopTimeoutMs = 3000;
 constexpr std::int64_t kLastWordsUs = 100'000;  // For the last status of each process.
-constexpr const char* kProcesses[] = {"preprocessor", "clusterer", "stop_guard"};
 constexpr char kLogInputs[] = "(LIDAR_POINTS|ODOMETRY|POSE|POSE_STATUS)";
+constexpr char kLogInputsWithoutPose[] = "(LIDAR_POINTS|ODOMETRY)";
 
 std::string ProgramOf(std::string process) {
   std::replace(process.begin(), process.end(), '_', '-');
@@ -73,6 +73,8 @@ void GraphRun::Listen() {
   for (const auto& channel : {channels::kPreprocessorStatus,
                               channels::kClustererStatus,
                               channels::kStopGuardStatus,
+                              channels::kMapServerStatus,
+                              channels::kPoseSourceStatus,
                               channels::kPlayStatus}) {
     node_.Subscribe<status_t>(channel, [this](const auto& m) { statistics_.OnStatus(m); });
     LogChannel(channel);
@@ -82,10 +84,24 @@ void GraphRun::Listen() {
   LogChannel(channels::kFloor);
   LogChannel(channels::kDetections);
   LogChannel(channels::kDrivePermit);
+  LogChannel(channels::kOdometry);
+  LogChannel(channels::kPose);
+  LogChannel(channels::kPoseStatus);
+  LogChannel(channels::kMapRequest);
+  LogChannel(channels::kMap);
+  LogChannel(channels::kLocalMap);
+  LogChannel(channels::kRemovedPoints);
+}
+
+std::vector<std::string> GraphRun::ProcessNames() const {
+  std::vector<std::string> names{"preprocessor", "clusterer", "stop_guard"};
+  if (settings_.with_map_server) names.emplace_back("map_server");
+  if (settings_.with_pose_source) names.emplace_back("pose_source");
+  return names;
 }
 
 void GraphRun::StartProcesses() {
-  for (const std::string process : kProcesses) {
+  for (const std::string& process : ProcessNames()) {
     std::vector<std::string> command{settings_.program_folder / ProgramOf(process)};
     command.insert(
         command.end(), settings_.child_arguments.begin(), settings_.child_arguments.end());
@@ -104,7 +120,12 @@ void GraphRun::StartFeeding() {
     command.insert(
         command.end(), settings_.child_arguments.begin(), settings_.child_arguments.end());
   } else if (settings_.kind == InputKind::kLog) {
-    command = {"lcm-logplayer", "-l", settings_.lcm_url, "-e", kLogInputs, settings_.input};
+    command = {"lcm-logplayer",
+               "-l",
+               settings_.lcm_url,
+               "-e",
+               settings_.with_pose_source ? kLogInputsWithoutPose : kLogInputs,
+               settings_.input};
   } else {
     return;
   }
@@ -124,13 +145,22 @@ void GraphRun::RefuseForeign(const status_t& status) const {
 }
 
 std::string GraphRun::WhoIsNotReady() const {
-  for (const std::string process : kProcesses) {
+  for (const std::string& process : ProcessNames()) {
     const status_t* const status = statistics_.StatusOf(process);
     if (status == nullptr) return process + " (nothing heard from it)";
     RefuseForeign(*status);
     if (status->ready == 0) return process + " (" + status->text + ")";
   }
+  if (settings_.wait_for_map && !HasMap()) return "the map on its way to the preprocessor";
   return {};
+}
+
+bool GraphRun::HasMap() const {
+  const status_t* const status = statistics_.StatusOf("preprocessor");
+  return std::any_of(
+      status->counters.begin(), status->counters.end(), [](const counter_t& counter) {
+        return counter.name == "map_epoch" && counter.value > 0;
+      });
 }
 
 void GraphRun::CheckForDeaths() {

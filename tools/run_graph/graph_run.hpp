@@ -32,6 +32,9 @@ struct RunSettings {
   std::vector<std::string> child_arguments;  ///< --config and what else every process gets.
   std::string lcm_url;                       ///< Of the local bus, for lcm-logplayer.
   std::string channel_prefix;
+  bool with_map_server = false;
+  bool wait_for_map = false;      ///< Feeding waits until the preprocessor has its map.
+  bool with_pose_source = false;  ///< POSE of a log is then not played.
   std::optional<double> stop_after_s;
   std::filesystem::path log;  ///< Everything is written to this LCM log; empty: nothing.
   bool show_progress = true;
@@ -66,9 +69,11 @@ class GraphRun {
   void Listen();
   template <typename Message>
   void LogChannel(const messages::Channel<Message>& channel);
+  [[nodiscard]] std::vector<std::string> ProcessNames() const;
   void StartProcesses();
   void StartFeeding();
   void Supervise();
+  [[nodiscard]] bool HasMap() const;
   void CheckForDeaths();
   void RefuseForeign(const status_t& status) const;
   [[nodiscard]] std::string WhoIsNotReady() const;

@@ -26,6 +26,7 @@ struct Arguments {
   fs::path output = "clearway_run";
   fs::path json;
   fs::path log;
+  fs::path map;
   std::optional<double> stop_after_s;
   bool headless = false;
 };
@@ -43,6 +44,8 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
       ->type_name("FOLDER");
   app.add_option("--json", arguments.json, "Write the figures to this file")->type_name("FILE");
   app.add_option("--log", arguments.log, "Write all messages to this LCM log")->type_name("FILE");
+  app.add_option("--map", arguments.map, "Serve this Nav2 map, and filter with it")
+      ->type_name("FILE");
   app.add_option("--for", arguments.stop_after_s, "Stop after this time")
       ->check(graph::Finite())
       ->check(CLI::Range(0.001, 1e6))
@@ -88,6 +91,10 @@ void FillIn(Arguments& arguments) {
   if (arguments.input != "live" && !fs::exists(arguments.input)) {
     throw std::runtime_error("--input " + arguments.input + ": no such file or folder");
   }
+  if (!arguments.map.empty()) {
+    arguments.common.overrides.push_back("map_server.file=" + fs::absolute(arguments.map).string());
+    arguments.common.overrides.emplace_back("preprocessor.map_filter.enabled=true");
+  }
 }
 
 std::vector<std::string> ChildArguments(const graph::Options& options) {
@@ -111,6 +118,9 @@ RunSettings SettingsOf(const Arguments& arguments, const graph::GraphConfig& con
   settings.child_arguments = ChildArguments(arguments.common);
   settings.lcm_url = config.buses.local.url + "?ttl=0";
   settings.channel_prefix = arguments.common.channel_prefix;
+  settings.with_map_server = !config.map_server.file.empty();
+  settings.wait_for_map = settings.with_map_server && config.preprocessor.map_filter.enabled;
+  settings.with_pose_source = config.pose_source.mode != core::PoseSourceMode::kOff;
   settings.stop_after_s = arguments.stop_after_s;
   settings.log = arguments.log;
   settings.show_progress = !arguments.headless && isatty(STDERR_FILENO) != 0;
