@@ -16,9 +16,10 @@ namespace channels = messages::channels;
 constexpr std::int64_t kDrain_us = 500'000;
 constexpr std::int64_t kLongest_us = 600'000'000;
 
-process::SimulatedRuntime::Limits LimitsOf(const graph::GraphConfig& config) {
-  return {.max_message_bytes = static_cast<std::size_t>(config.buses.local.max_message_bytes),
-          .burst_interval_us = config.buses.local.burst_interval_us};
+// The processes begin to log when they are made; the tests look at STATUS.
+const graph::GraphConfig& WithoutLog(const graph::GraphConfig& config) {
+  process::SetUpLog("test", "off");
+  return config;
 }
 
 }  // namespace
@@ -41,41 +42,26 @@ std::vector<core::PointCloud> ReadAll(play::ScanSource& source) {
 SimulatedGraph::SimulatedGraph(const graph::GraphConfig& config)
     : SimulatedGraph(config, Parts{}) {}
 
-SimulatedGraph::SimulatedGraph(const graph::GraphConfig& config, const Parts& parts)
-    : runtime_(kStart, LimitsOf(config)) {
-  process::SetUpLog("test", "off");  // The tests look at STATUS.
-  runtime_.SetTap(
+SimulatedGraph::SimulatedGraph(const graph::GraphConfig& config,
+                               const Parts& parts,
+                               std::optional<core::OccupancyGrid> map)
+    : graph_(WithoutLog(config),
+             {.start_utime = kStart,
+              .version = "test",
+              .config_digest = "digest",
+              .map = std::move(map),
+              .parts = parts}) {
+  runtime().SetTap(
       [this](messages::BusId, const std::string& channel, std::span<const std::byte> bytes) {
-        tapped_.push_back({runtime_.MonotonicUs(), channel, {bytes.begin(), bytes.end()}});
+        tapped_.push_back({now_us(), channel, {bytes.begin(), bytes.end()}});
       });
-  if (parts.preprocessor) {
-    preprocessor_.emplace(config.preprocessor,
-                          config.vehicle,
-                          AddNode("preprocessor", channels::kPreprocessorStatus));
-  }
-  if (parts.clusterer) {
-    clusterer_.emplace(config.clusterer.backend,
-                       config.clusterer.clustering,
-                       AddNode("clusterer", channels::kClustererStatus));
-  }
-  if (parts.stop_guard) {
-    stop_guard_.emplace(
-        config.stop_guard, config.vehicle, AddNode("stop_guard", channels::kStopGuardStatus));
-  }
-}
-
-process::Node& SimulatedGraph::AddNode(const std::string& name,
-                                       const messages::Channel<status_t>& channel) {
-  nodes_.push_back(std::make_unique<process::Node>(
-      runtime_, process::Identity{name, "test", "digest"}, channel));
-  return *nodes_.back();
 }
 
 void SimulatedGraph::Play(play::ScanSource& source, RelayRuntime::Decide wire) {
   if (!wire) wire = [](auto) { return RelayRuntime::Deliveries{0}; };
   Playing playing;
   playing.relay =
-      std::make_unique<RelayRuntime>(runtime_, channels::kLidarPoints.name, std::move(wire));
+      std::make_unique<RelayRuntime>(runtime(), channels::kLidarPoints.name, std::move(wire));
   playing.node = std::make_unique<process::Node>(
       *playing.relay, process::Identity{"play", "test", "digest"}, channels::kPlayStatus);
   playing.player = std::make_unique<play::Player>(
@@ -93,8 +79,7 @@ void SimulatedGraph::RunToTheEnd() {
 }
 
 status_t SimulatedGraph::FreshStatus(const messages::Channel<status_t>& channel) {
-  for (const auto& node : nodes_) node->RefreshAndPublishStatus();
-  RunFor(0);
+  graph_.PublishStatuses();
   const auto statuses = On(channel);
   if (statuses.empty()) throw std::runtime_error(std::string("nothing on ") + channel.name);
   return statuses.back().message;

@@ -14,11 +14,9 @@
 #include "common/messages/encoding.hpp"
 #include "common/process/node.hpp"
 #include "common/process/simulated_runtime.hpp"
-#include "processes/clusterer/clusterer_process.hpp"
-#include "processes/preprocessor/preprocessor_process.hpp"
-#include "processes/stop_guard/stop_guard_process.hpp"
 #include "tests/support/relay_runtime.hpp"
 #include "tools/play/player.hpp"
+#include "tools/replay/memory_graph.hpp"
 
 namespace clearway::test {
 
@@ -66,26 +64,25 @@ class ListedScans final : public play::ScanSource {
 /// All scans of a source.
 [[nodiscard]] std::vector<core::PointCloud> ReadAll(play::ScanSource& source);
 
-/// The graph's process objects, each with its node, on one bus in virtual time.
+/// A MemoryGraph with players, and ears.
 class SimulatedGraph {
  public:
-  struct Parts {
-    bool preprocessor = true;
-    bool clusterer = true;
-    bool stop_guard = true;
-  };
+  using Parts = replay::GraphParts;
   static constexpr std::int64_t kStart = 1'700'000'000'000'000;
 
   explicit SimulatedGraph(const graph::GraphConfig& config);
-  SimulatedGraph(const graph::GraphConfig& config, const Parts& parts);
+  /// `map` is what the map server serves; without one there is no map server.
+  SimulatedGraph(const graph::GraphConfig& config,
+                 const Parts& parts,
+                 std::optional<core::OccupancyGrid> map = std::nullopt);
 
-  [[nodiscard]] process::SimulatedRuntime& runtime() { return runtime_; }
-  [[nodiscard]] std::int64_t now_us() const { return runtime_.MonotonicUs(); }
+  [[nodiscard]] process::SimulatedRuntime& runtime() { return graph_.runtime(); }
+  [[nodiscard]] std::int64_t now_us() const { return graph_.runtime().MonotonicUs(); }
 
   /// Starts a player now; what it publishes on LIDAR_POINTS goes through `wire` when that is given.
   void Play(play::ScanSource& source, RelayRuntime::Decide wire = {});
 
-  void RunFor(std::int64_t duration_us) { runtime_.RunUntil(now_us() + duration_us); }
+  void RunFor(std::int64_t duration_us) { runtime().RunUntil(now_us() + duration_us); }
 
   /// Runs until the last player is done and its last scan has gone through; at most 10 minutes.
   void RunToTheEnd();
@@ -113,14 +110,9 @@ class SimulatedGraph {
     std::unique_ptr<process::Node> node;
     std::unique_ptr<play::Player> player;
   };
-  process::Node& AddNode(const std::string& name, const messages::Channel<status_t>& channel);
 
-  process::SimulatedRuntime runtime_;
+  replay::MemoryGraph graph_;
   std::vector<TappedMessage> tapped_;
-  std::vector<std::unique_ptr<process::Node>> nodes_;
-  std::optional<PreprocessorProcess> preprocessor_;
-  std::optional<ClustererProcess> clusterer_;
-  std::optional<StopGuardProcess> stop_guard_;
   std::vector<Playing> players_;
   std::size_t num_done_ = 0;
 };
