@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "common/config/config.hpp"
@@ -74,3 +75,16 @@ struct GraphConfig {
 };
 
 }  // namespace clearway::graph
+
+// What is long to compile is compiled once, in graph_config.cpp.
+namespace clearway::config {
+extern template LoadResult<graph::GraphConfig> Parse(const std::string& text,
+                                                     const std::string& file,
+                                                     std::span<const std::string> overrides);
+extern template LoadResult<graph::GraphConfig> Load(const std::filesystem::path& file,
+                                                    std::span<const std::string> overrides);
+extern template std::string Print(const LoadResult<graph::GraphConfig>& result);
+extern template std::string ToXml(const graph::GraphConfig& root, const XmlOptions& options);
+extern template std::string Digest(const graph::GraphConfig& root);
+extern template std::string Reference(const graph::GraphConfig& root);
+}  // namespace clearway::config
