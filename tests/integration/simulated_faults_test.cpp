@@ -93,7 +93,7 @@ struct WireCase {
 // A whole run behind one wire.
 struct WireRun {
   explicit WireRun(const WireCase& wire_case) : wire(20240607, wire_case.odds) {
-    static ListedScans scans(ReadAll(*FreeRoom(12.0)));
+    static ListedScans scans(ReadAll(*FreeRoom(5.0)));
     graph.Play(scans, std::ref(wire));
     graph.RunToTheEnd();
   }
@@ -227,7 +227,7 @@ TEST(ForeignPublisherTest, ASecondPublisherOfOneSensorIsReportedAndStopsTheVehic
   const auto second = FreeRoom(20.0);
   SimulatedGraph graph(LabConfig());
   const std::int64_t second_from_us = graph.now_us() + 2 * kSecond;
-  const std::int64_t second_until_us = graph.now_us() + 6 * kSecond;
+  const std::int64_t second_until_us = graph.now_us() + 4 * kSecond;
 
   graph.Play(*first);
   graph.RunFor(2 * kSecond + 4'321);  // So that the two take turns.
@@ -236,7 +236,7 @@ TEST(ForeignPublisherTest, ASecondPublisherOfOneSensorIsReportedAndStopsTheVehic
     return graph.now_us() < second_until_us ? RelayRuntime::Deliveries{0}
                                             : RelayRuntime::Deliveries{};
   });
-  graph.RunFor(12 * kSecond);
+  graph.RunFor(6 * kSecond);
 
   EXPECT_EQ(foreign_before, 0);
   EXPECT_GT(graph.FreshStatus(channels::kStopGuardStatus).foreign, 0);

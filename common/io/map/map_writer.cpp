@@ -11,8 +11,8 @@
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <utility>
 #include <unistd.h>
+#include <utility>
 
 #include <yaml-cpp/yaml.h>
 
