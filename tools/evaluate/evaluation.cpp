@@ -9,13 +9,23 @@
 namespace clearway::evaluate {
 namespace {
 
-Scene SceneOf(LoggedScan scan,
-              const std::vector<Box>& boxes_sensor,
-              const Eigen::Isometry3d& T_vehicle_sensor) {
-  Scene scene{
-      .points = std::move(scan.points), .detections = std::move(scan.detections), .boxes = {}};
-  for (const Box& box : boxes_sensor) scene.boxes.push_back(Moved(T_vehicle_sensor, box));
-  return scene;
+std::vector<Box> AllMoved(const Eigen::Isometry3d& T_G_F, const std::vector<Box>& boxes) {
+  std::vector<Box> moved;
+  for (const Box& box : boxes) moved.push_back(Moved(T_G_F, box));
+  return moved;
+}
+
+MapFilterScorer MakeMapFilterScorer(const core::PreprocessorConfig& config,
+                                    const EvaluationInput& input,
+                                    const ScoreRules& rules,
+                                    std::vector<core::StampedPose> poses) {
+  return {{.tolerance_m = rules.tolerance_m,
+           .z_min_m = config.map_filter.z_min_m,
+           .z_max_m = config.map_filter.z_max_m,
+           .min_points = rules.min_points},
+          config.pose,
+          std::move(poses),
+          input.T_map_reference};
 }
 
 io::ReadError NothingScored(const EvaluationInput& input, const LoggedScans& logged) {
@@ -62,12 +72,21 @@ Evaluation Evaluate(const EvaluationInput& input,
 
   const Eigen::Isometry3d T_vehicle_sensor = config.vehicle.sensors.front().T_vehicle_sensor();
   std::vector<SceneScore> scores;
+  MapFilterScorer map_filter =
+      MakeMapFilterScorer(config.preprocessor, input, rules, std::move(logged.poses));
   for (LoggedScan& scan : logged.scans) {
-    const std::vector<Box>& boxes = labels_by_utime.at(scan.scan_utime)->second;
-    scores.push_back(ScoreScene(SceneOf(std::move(scan), boxes, T_vehicle_sensor), rules));
+    std::vector<Box> boxes =
+        AllMoved(T_vehicle_sensor, labels_by_utime.at(scan.scan_utime)->second);
+    map_filter.Add(scan, boxes);
+    scores.push_back(ScoreScene({.points = std::move(scan.points),
+                                 .detections = std::move(scan.detections),
+                                 .boxes = std::move(boxes)},
+                                rules));
   }
   return {.rules = rules,
           .summary = Summarise(scores),
+          .map_filter =
+              logged.has_removed_points ? std::optional(map_filter.Summarise()) : std::nullopt,
           .scans_missing_slices = logged.missing_slices,
           .scans_unlabelled = logged.not_wanted,
           .labels_not_in_log = labels.size() - labels_by_utime.size(),

@@ -1,37 +1,50 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/evaluate/log_scans.hpp"
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 
 #include "common/io/lcm_log.hpp"
 #include "common/io/read_error.hpp"
 #include "common/messages/channels.hpp"
+#include "common/messages/detections.hpp"
 #include "common/messages/encoding.hpp"
 #include "common/messages/obstacle_points.hpp"
+#include "common/messages/pose.hpp"
 
 namespace clearway::evaluate {
 namespace {
 
 using messages::channels::kDetections;
 using messages::channels::kObstaclePoints;
+using messages::channels::kPose;
+using messages::channels::kRemovedPoints;
 
-core::Detection FromLcm(const detection_t& message) {
-  core::Detection detection;
-  detection.num_points = static_cast<std::uint32_t>(std::max(message.points, 0));
-  detection.centroid = {message.centroid[0], message.centroid[1], message.centroid[2]};
-  detection.nearest = {message.nearest[0], message.nearest[1]};
-  detection.z_min_m = message.z_min;
-  detection.z_max_m = message.z_max;
-  detection.rectangle = {.center = {message.center[0], message.center[1]},
-                         .length_m = message.length_m,
-                         .width_m = message.width_m,
-                         .yaw_rad = message.yaw_rad};
-  for (std::size_t i = 0; i < message.hull_x.size(); ++i) {
-    detection.hull.emplace_back(message.hull_x[i], message.hull_y[i]);
+template <typename Message>
+std::int64_t TimeOfScan(const Message& slice) {
+  return slice.scan_utime;
+}
+
+std::int64_t TimeOfScan(const removed_points_t& slice) {
+  return slice.utime;
+}
+
+// What the map filter did with a scan, besides its OBSTACLE_POINTS.
+std::optional<core::PointCloud> RemovedByMap(const std::vector<removed_points_t>& slices) {
+  if (slices.empty()) return std::nullopt;
+  core::PointCloud removed;
+  for (const removed_points_t& slice : slices) {
+    for (std::size_t i = 0; i < slice.reason.size(); ++i) {
+      if (slice.reason[i] != removed_points_t::REASON_MAP) continue;
+      removed.Add({slice.x[i], slice.y[i], slice.z[i]});
+    }
   }
-  return detection;
+  return removed;
+}
+
+bool IsFiltered(const obstacle_points_t& slice) {
+  return slice.map_state == obstacle_points_t::MAP_FILTERED ||
+         slice.map_state == obstacle_points_t::OUTSIDE_MAP;
 }
 
 LoggedScan Join(std::int64_t scan_utime,
@@ -39,12 +52,15 @@ LoggedScan Join(std::int64_t scan_utime,
                 const std::vector<detections_t>& detections) {
   LoggedScan scan;
   scan.scan_utime = scan_utime;
+  scan.utime = points.front().utime;
+  scan.is_complete = points.front().scan_state == obstacle_points_t::SCAN_COMPLETE;
+  scan.is_filtered = IsFiltered(points.front());
   for (const obstacle_points_t& slice : points) {
     scan.points.Append(messages::FromLcm(slice).cloud_sensor);
   }
   for (const detections_t& slice : detections) {
     for (const detection_t& detection : slice.detections) {
-      scan.detections.push_back(FromLcm(detection));
+      scan.detections.push_back(messages::FromLcm(detection));
     }
   }
   return scan;
@@ -70,7 +86,7 @@ void AddIfOn(const messages::Channel<Message>& channel,
 template <typename Message>
 bool SliceCollector<Message>::Add(Message slice) {
   if (slice.slice_index < 0 || slice.slice_index >= slice.slice_count) return false;
-  Scan& scan = scans_[slice.scan_utime][slice.session];
+  Scan& scan = scans_[TimeOfScan(slice)][slice.session];
   if (scan.slices.empty()) scan.slice_count = slice.slice_count;
   if (slice.slice_count != scan.slice_count) return false;
   scan.slices.try_emplace(slice.slice_index, std::move(slice));
@@ -78,14 +94,14 @@ bool SliceCollector<Message>::Add(Message slice) {
 }
 
 template <typename Message>
-std::vector<Message> SliceCollector<Message>::SlicesOf(std::int64_t scan_utime) const {
+std::vector<Message> SliceCollector<Message>::SlicesOf(std::int64_t utime) const {
   std::vector<Message> slices;
-  const auto sessions = scans_.find(scan_utime);
+  const auto sessions = scans_.find(utime);
   if (sessions == scans_.end()) return slices;
   for (const auto& [session, scan] : sessions->second) {
     if (scan.slices.size() != static_cast<std::size_t>(scan.slice_count)) continue;
     if (!slices.empty()) {
-      throw io::ReadError("scan at " + std::to_string(scan_utime) + " us: sessions " +
+      throw io::ReadError("scan at " + std::to_string(utime) + " us: sessions " +
                           std::to_string(slices.front().session) + " and " +
                           std::to_string(session) + " of one " + Message::getTypeName() +
                           " channel both published it; expected the log of one run");
@@ -97,6 +113,7 @@ std::vector<Message> SliceCollector<Message>::SlicesOf(std::int64_t scan_utime) 
 
 template class SliceCollector<detections_t>;
 template class SliceCollector<obstacle_points_t>;
+template class SliceCollector<removed_points_t>;
 
 ScanCollector::ScanCollector(std::function<bool(std::int64_t)> is_wanted)
     : is_wanted_(std::move(is_wanted)) {}
@@ -115,9 +132,25 @@ void ScanCollector::Add(detections_t slice) {
   if (IsWanted(slice.scan_utime) && !detections_.Add(std::move(slice))) ++invalid_messages_;
 }
 
+void ScanCollector::Add(removed_points_t slice) {
+  has_removed_points_ = true;
+  if (!removed_.Add(std::move(slice))) ++invalid_messages_;
+}
+
+void ScanCollector::Add(const pose_t& pose) {
+  const Eigen::Isometry3d T_map_vehicle = messages::T_map_vehicle(pose);
+  if (core::IsFinite(T_map_vehicle)) {
+    poses_[pose.utime] = T_map_vehicle;
+  } else {
+    ++invalid_messages_;
+  }
+}
+
 LoggedScans ScanCollector::Collect() const {
   LoggedScans result;
   result.invalid_messages = invalid_messages_;
+  result.has_removed_points = has_removed_points_;
+  for (const auto& [utime, pose] : poses_) result.poses.push_back({utime, pose});
   for (const auto& [scan_utime, is_wanted] : wanted_) {
     if (!is_wanted) {
       ++result.not_wanted;
@@ -129,6 +162,8 @@ LoggedScans ScanCollector::Collect() const {
       ++result.missing_slices;
     } else {
       result.scans.push_back(Join(scan_utime, points, detections));
+      LoggedScan& scan = result.scans.back();
+      scan.removed_by_map = RemovedByMap(removed_.SlicesOf(scan.utime));
     }
   }
   return result;
@@ -142,6 +177,8 @@ LoggedScans ReadLog(const std::filesystem::path& log,
   while (const std::optional<io::LogEvent> event = reader.Next()) {
     AddIfOn(kObstaclePoints, channel_prefix, *event, collector);
     AddIfOn(kDetections, channel_prefix, *event, collector);
+    AddIfOn(kRemovedPoints, channel_prefix, *event, collector);
+    AddIfOn(kPose, channel_prefix, *event, collector);
   }
   return collector.Collect();
 }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
 #include <fstream>
+#include <numbers>
+#include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -17,11 +20,16 @@ struct Arguments {
   EvaluationInput input;
   ScoreRules rules;
   std::filesystem::path json;
+  std::vector<double> reference_pose;
 };
 
 void AddArguments(CLI::App& app, Arguments& arguments) {
   graph::AddOptions(app, arguments.common);
-  app.add_option("--log", arguments.input.log, "LCM log with DETECTIONS and OBSTACLE_POINTS")
+  app.add_option("--log",
+                 arguments.input.log,
+                 "LCM log with DETECTIONS and OBSTACLE_POINTS; with REMOVED_POINTS the map filter "
+                 "is scored, "
+                 "too")
       ->required()
       ->type_name("FILE");
   app.add_option("--labels",
@@ -33,6 +41,12 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
   app.add_option("--input", arguments.input.input, "The recording that was played")
       ->required()
       ->type_name("PATH");
+  app.add_option("--reference-pose",
+                 arguments.reference_pose,
+                 "Where the vehicle really stood in map [m, m, deg]: gives the error of POSE")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("X_M,Y_M,YAW_DEG");
   app.add_option("--json", arguments.json, "Write the figures to this file")->type_name("FILE");
   app.add_option("--min-points", arguments.rules.min_points, "Leave out boxes with fewer points")
       ->check(CLI::Range(0, 1'000'000'000))
@@ -45,6 +59,12 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
   app.add_option("--tolerance", arguments.rules.tolerance_m, "Boxes are grown by this much [m]")
       ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
+}
+
+std::optional<Eigen::Isometry3d> ReferencePose(const std::vector<double>& x_y_yaw_deg) {
+  if (x_y_yaw_deg.empty()) return std::nullopt;
+  const double yaw_rad = x_y_yaw_deg[2] * std::numbers::pi / 180.0;
+  return core::FromRpy({x_y_yaw_deg[0], x_y_yaw_deg[1], 0.0}, {0.0, 0.0, yaw_rad});
 }
 
 void WriteFile(const std::filesystem::path& path, const std::string& text) {
@@ -60,6 +80,7 @@ int Main(int argc, char** argv) {
   AddArguments(app, arguments);
   return graph::GuardedMain(app, arguments.common, argc, argv, [&] {
     arguments.input.channel_prefix = arguments.common.channel_prefix;
+    arguments.input.T_map_reference = ReferencePose(arguments.reference_pose);
     const auto config = graph::LoadConfig(arguments.common);
     if (graph::AnsweredByConfig(arguments.common, config)) return graph::kExitOk;
     const Evaluation evaluation = Evaluate(arguments.input, config.root, arguments.rules);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 #include <cstdio>
+#include <numbers>
 
 #include "tools/evaluate/report.hpp"
 
@@ -38,6 +39,26 @@ std::string RecallTable(const Summary& summary) {
   return text + '\n';
 }
 
+std::string RemovedLine(const char* name, const RemovedShare& share) {
+  return share.points == 0 ? "" : ShareLine(name, share.removed, share.points);
+}
+
+std::string MapFilterTable(const MapFilterSummary& map_filter) {
+  constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
+  std::string text = "\nmap filter\n" + CountLine("scans it is judged by", map_filter.scans);
+  if (map_filter.pose_error) {
+    text += FigureLine("pose error, mean m", map_filter.pose_error->distance_m);
+    text += FigureLine("pose error, mean deg", map_filter.pose_error->turn_rad * kDegreesPerRadian);
+  }
+  text += RemovedLine("static points removed", map_filter.counts.statics);
+  text += RemovedLine("of those in the height band", map_filter.counts.statics_in_band);
+  text += FigureLine("static points leaked per scan", map_filter.LeakedPerScan());
+  text += RemovedLine("object points swallowed", map_filter.counts.objects);
+  return text + CountLine("scans incomplete", map_filter.scans_incomplete) +
+         CountLine("scans without map or pose", map_filter.scans_not_filtered) +
+         CountLine("scans missing REMOVED_POINTS", map_filter.scans_missing_removed);
+}
+
 std::string LeftOutTable(const Evaluation& evaluation) {
   return CountLine("scans with missing slices", evaluation.scans_missing_slices) +
          CountLine("scans without labels", evaluation.scans_unlabelled) +
@@ -64,6 +85,7 @@ std::string FormatTable(const Evaluation& evaluation) {
   text += FigureLine("yaw error, median deg", summary.yaw_error_deg);
   if (summary.splits) text += CountLine("splits", *summary.splits);
   if (summary.merges) text += CountLine("merges", *summary.merges);
+  if (evaluation.map_filter) text += MapFilterTable(*evaluation.map_filter);
   return text + "\nleft out\n" + LeftOutTable(evaluation);
 }
 

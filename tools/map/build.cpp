@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "common/core/mapping/wall_depth.hpp"
 #include "common/io/lcm_log.hpp"
 #include "common/io/read_error.hpp"
 #include "common/messages/channels.hpp"
@@ -60,7 +61,10 @@ BuildReport BuildMap(const BuildSettings& settings) {
                               ": it is published for scans that have a POSE, so set pose_source "
                               "or run a localization, and record again");
   }
-  report.map = builder.Build(settings.rules);
+  const OccupancyGrid seen = builder.Build(settings.rules);
+  report.map = core::WithWallDepth(seen, settings.wall_depth_m);
+  report.cells_deepened = static_cast<std::size_t>(Count(report.map, OccupancyGrid::kOccupied) -
+                                                   Count(seen, OccupancyGrid::kOccupied));
   return report;
 }
 
@@ -81,6 +85,10 @@ std::string Describe(const BuildReport& report) {
                 static_cast<long long>(Count(report.map, OccupancyGrid::kFree)),
                 static_cast<long long>(Count(report.map, OccupancyGrid::kUnknown)));
   std::string description = text.data();
+  if (report.cells_deepened > 0) {
+    description += std::to_string(report.cells_deepened) +
+                   " of the occupied cells are unknown ones behind what was hit (--wall-depth)\n";
+  }
   if (report.slices_invalid + report.slices_refused > 0) {
     description += "left out: " + std::to_string(report.slices_invalid) +
                    " broken slices of LOCAL_MAP, " + std::to_string(report.slices_refused) +

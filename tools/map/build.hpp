@@ -15,6 +15,7 @@ struct BuildSettings {
   std::filesystem::path output;  ///< The YAML file; the image goes beside it.
   std::string channel_prefix;
   core::MapBuilderConfig rules;
+  double wall_depth_m = 0.15;  ///< See core::WithWallDepth().
 };
 
 /// What came of it.
@@ -22,6 +23,7 @@ struct BuildReport {
   std::size_t scans = 0;           ///< With at least one usable slice of LOCAL_MAP.
   std::size_t slices_invalid = 0;  ///< Do not decode, or break a rule of the type.
   std::size_t slices_refused = 0;  ///< Of another resolution, or too far away.
+  std::size_t cells_deepened = 0;  ///< Unknown ones that the wall depth made occupied.
   core::OccupancyGrid map;
 };
 

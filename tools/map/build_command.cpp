@@ -46,6 +46,14 @@ Subcommand AddBuild(CLI::App& program) {
           "--min-scans", settings->rules.min_scans, "A cell that fewer scans saw is unknown")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
+  build
+      ->add_option("--wall-depth",
+                   settings->wall_depth_m,
+                   "Unknown cells this near to an occupied one become occupied [m]: scans see the "
+                   "face of a wall only, and a pose that is a little off looks behind it. 0: none")
+      ->check(graph::Finite())
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   build->add_option("--channel-prefix", settings->channel_prefix, "Put before every channel name")
       ->type_name("TEXT");
   return {build, [settings] { return RunBuild(*settings); }};

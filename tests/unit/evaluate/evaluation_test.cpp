@@ -8,6 +8,7 @@
 #include "common/io/read_error.hpp"
 #include "common/messages/detections.hpp"
 #include "common/messages/encoding.hpp"
+#include "common/messages/pose.hpp"
 #include "tests/unit/evaluate/scenes.hpp"
 #include "tests/unit/io/temporary_folder.hpp"
 
@@ -38,6 +39,8 @@ class EvaluationTest : public testing::Test {
     Scene scene;
     test::AddDetection(scene, test::MakePatch(centre_vehicle, 0.8F, 5));
     obstacle_points_t points{};
+    points.utime = EndOf(scan);
+    points.map_state = obstacle_points_t::MAP_FILTERED;
     points.scan_utime = UtimeOf(scan);
     points.slice_count = 1;
     points.n = static_cast<std::int32_t>(scene.points.size());
@@ -51,6 +54,21 @@ class EvaluationTest : public testing::Test {
     for (const detections_t& slice : messages::ToDetections(points, detections, 58000)) {
       log.Write(2, "DETECTIONS", messages::Encode(slice));
     }
+  }
+
+  static std::int64_t EndOf(int scan) { return UtimeOf(scan) + 100'000; }
+
+  /// Writes that the map filter removed three points: two of the box kBoxAtFive, one far from it.
+  static void WriteRemoved(io::LcmLogWriter& log, int scan) {
+    removed_points_t removed{};
+    removed.utime = EndOf(scan);
+    removed.slice_count = 1;
+    removed.n = 3;
+    removed.x = {6.0F, 6.1F, 9.0F};
+    removed.y = {0.0F, 0.0F, 0.0F};
+    removed.z = {0.4F, 0.4F, 3.0F};
+    removed.reason.assign(3, removed_points_t::REASON_MAP);
+    log.Write(3, "REMOVED_POINTS", messages::Encode(removed));
   }
 
   [[nodiscard]] EvaluationInput Input() const {
@@ -92,6 +110,46 @@ TEST_F(EvaluationTest, ScansAndLabelsWithoutACounterpartAreCounted) {
   EXPECT_EQ(evaluation.summary.scans, 1U);
   EXPECT_EQ(evaluation.scans_unlabelled, 2U);
   EXPECT_EQ(evaluation.labels_not_in_log, 1U);
+}
+
+TEST_F(EvaluationTest, TheMapFilterIsScoredByWhatItRemoved) {
+  folder_.Write("boxes/a.json", kBoxAtFive);
+  folder_.Write("boxes/b.json", kBoxAtFive);
+  {
+    io::LcmLogWriter log(Input().log);
+    const Eigen::Isometry3d T_map_vehicle(Eigen::Translation3d(0.3, 0.0, 0.0));
+    log.Write(0, "POSE", messages::Encode(messages::ToPose(EndOf(1), T_map_vehicle)));
+    for (const int scan : {0, 1}) WriteScan(log, scan, {6.0F, 0.0F});
+    WriteRemoved(log, 1);
+  }
+  EvaluationInput input = Input();
+  input.T_map_reference = Eigen::Isometry3d::Identity();
+  config_.preprocessor.map_filter.z_max_m = 2.5;
+
+  const Evaluation evaluation = Evaluate(input, config_, {});
+
+  EXPECT_EQ(evaluation.summary.scans, 2U);
+  ASSERT_TRUE(evaluation.map_filter.has_value());
+  const MapFilterSummary& map_filter = *evaluation.map_filter;
+  EXPECT_EQ(map_filter.scans, 1U);
+  EXPECT_EQ(map_filter.scans_missing_removed, 1U);
+  EXPECT_EQ(map_filter.counts.objects.points, 27U) << "a patch of 5 x 5 and two removed points";
+  EXPECT_EQ(map_filter.counts.objects.removed, 2U);
+  EXPECT_EQ(map_filter.counts.statics.points, 1U);
+  EXPECT_EQ(map_filter.counts.statics.removed, 1U);
+  EXPECT_EQ(map_filter.counts.statics_in_band.points, 0U);
+  ASSERT_TRUE(map_filter.pose_error.has_value());
+  EXPECT_THAT(map_filter.pose_error->distance_m, DoubleNear(0.3, 1e-9));
+}
+
+TEST_F(EvaluationTest, WithoutRemovedPointsTheMapFilterIsNotScored) {
+  folder_.Write("boxes/a.json", kBoxAtFive);
+  {
+    io::LcmLogWriter log(Input().log);
+    WriteScan(log, 0, {6.0F, 0.0F});
+  }
+
+  EXPECT_FALSE(Evaluate(Input(), config_, {}).map_filter.has_value());
 }
 
 TEST_F(EvaluationTest, ALogOfAnotherRecordingIsRefused) {
