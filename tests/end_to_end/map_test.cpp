@@ -181,7 +181,7 @@ TEST_F(LargeMapTest, ABuildingArrivesWholeBesideRunningScans) {
 }
 
 TEST_F(LargeMapTest, NoiseThatDoesNotCompressArrivesWholeBesideRunningScans) {
-  ExpectToArriveWhole(Noise(kIsSanitized ? 500 : 4000), "noise");
+  ExpectToArriveWhole(Noise(kIsSanitized ? 300 : 1500), "noise");
 }
 
 }  // namespace

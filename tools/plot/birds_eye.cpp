@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tools/plot/label_placer.hpp"
+#include "tools/plot/map_underlay.hpp"
 #include "tools/plot/panels.hpp"
 
 namespace clearway::plot {
@@ -14,7 +15,10 @@ constexpr double kBottomMargin_px = 38.0;
 constexpr double kLeastGridCell_px = 60.0;
 constexpr TextStyle kTick{.size_px = 12.0, .colour = kTextGrey};
 constexpr TextStyle kLabel{.size_px = 12.0, .colour = kDarkPurple, .has_halo = true};
-constexpr TextStyle kTruthLabel{.size_px = 12.0, .colour = kTextGrey, .has_halo = true};
+constexpr TextStyle kTruthLabel{.size_px = 13.0,
+                                .colour = kBlack,
+                                .is_bold = true,
+                                .has_halo = true};
 constexpr TextStyle kCorridorLabel{.size_px = 13.0,
                                    .colour = kBlack,
                                    .is_bold = true,
@@ -41,21 +45,22 @@ class BirdsEye {
 
   PanelReport Draw(const ScanPicture& picture) {
     canvas_.FillRect(area_, kPanel);
+    if (const PictureMap* const map = MapOf(picture)) DrawMap(canvas_, area_, *map, View());
     canvas_.BeginClip(area_);
     DrawGrid();
-    for (const PictureCorridor& corridor : picture.corridors) DrawCorridor(corridor);
-    for (const PictureDetection& detection : picture.detections) {
+    for (const PictureCorridor& corridor : CorridorsOf(picture)) DrawCorridor(corridor);
+    for (const PictureDetection& detection : DetectionsOf(picture)) {
       canvas_.FillPolygon(ToPixels(detection.hull), kPurple.WithOpacity(0.28));
     }
     DrawPoints(picture);
     DrawAxes();
     DrawVehicle(picture);
-    for (const PictureTruthBox& box : picture.truth_boxes) {
+    for (const PictureTruthBox& box : TruthBoxesOf(picture)) {
       canvas_.StrokePolygon(
           ToPixels(Corners(box.center.head<2>(), box.length_m, box.width_m, box.yaw_rad)),
-          {kTextGrey, 1.3, true});
+          {kBlack, 1.6, true});
     }
-    for (const PictureDetection& detection : picture.detections) DrawDetection(detection);
+    for (const PictureDetection& detection : DetectionsOf(picture)) DrawDetection(detection);
     DrawLabels(picture);
     canvas_.EndClip();
     canvas_.StrokeRect(area_, {kPointGrey, 1.0});
@@ -67,6 +72,19 @@ class BirdsEye {
   [[nodiscard]] Eigen::Vector2d ToPixel(double x_m, double y_m) const {
     return {area_.x + 0.5 * area_.width - (y_m - y_middle_m_) * px_per_m_,
             area_.y + 0.5 * area_.height - (x_m - x_middle_m_) * px_per_m_};
+  }
+
+  [[nodiscard]] Eigen::Vector2d ToFloor(const Eigen::Vector2d& pixel) const {
+    return {x_middle_m_ - (pixel.y() - area_.y - 0.5 * area_.height) / px_per_m_,
+            y_middle_m_ - (pixel.x() - area_.x - 0.5 * area_.width) / px_per_m_};
+  }
+
+  [[nodiscard]] FloorView View() const {
+    return {
+        .floor_at = [this](const Eigen::Vector2d& pixel) { return ToFloor(pixel); },
+        .pixel_at = [this](const Eigen::Vector2d& point) { return ToPixel(point.x(), point.y()); },
+        .low = ToFloor({area_.x + area_.width, area_.y + area_.height}),
+        .high = ToFloor({area_.x, area_.y})};
   }
 
   [[nodiscard]] std::vector<Eigen::Vector2d> ToPixels(
@@ -188,9 +206,9 @@ class BirdsEye {
     canvas_.StrokeLine(c - Eigen::Vector2d(0.0, 4.0), c + Eigen::Vector2d(0.0, 4.0), {kBlack, 1.4});
   }
 
-  // Corridors first, then the nearest detections: they matter most.
+  // Corridors and ground truth first, then the nearest detections: they matter most.
   void DrawLabels(const ScanPicture& picture) {
-    for (const PictureCorridor& corridor : picture.corridors) {
+    for (const PictureCorridor& corridor : CorridorsOf(picture)) {
       if (corridor.polygon.empty()) continue;
       // Beside the right edge, half way.
       Eigen::Vector2f lowest = corridor.polygon.front();
@@ -201,16 +219,16 @@ class BirdsEye {
       }
       PlaceLabel(corridor.label, {0.5F * (lowest.x() + highest.x()), lowest.y()}, kCorridorLabel);
     }
+    for (const PictureTruthBox& box : TruthBoxesOf(picture)) {
+      PlaceLabel(box.label, box.center.head<2>(), kTruthLabel);
+    }
     std::vector<const PictureDetection*> nearest;
-    for (const PictureDetection& detection : picture.detections) nearest.push_back(&detection);
+    for (const PictureDetection& detection : DetectionsOf(picture)) nearest.push_back(&detection);
     std::stable_sort(nearest.begin(), nearest.end(), [](const auto* a, const auto* b) {
       return a->center.squaredNorm() < b->center.squaredNorm();
     });
     for (const PictureDetection* detection : nearest) {
       PlaceLabel(detection->label, detection->center, kLabel);
-    }
-    for (const PictureTruthBox& box : picture.truth_boxes) {
-      PlaceLabel(box.label, box.center.head<2>(), kTruthLabel);
     }
   }
 

@@ -111,6 +111,14 @@ std::optional<Vector2d> Camera::Project(const Vector3d& point) const {
   return ToPixel(camera);
 }
 
+std::optional<Vector2d> Camera::FloorAt(const Vector2d& pixel) const {
+  const Vector2d offset = (pixel - center_px_) / focal_px_;
+  const Vector3d ray = forward_ + offset.x() * right_ + offset.y() * down_;
+  const double distance = -position_.z() / ray.z();
+  if (!(ray.z() < 0.0 && distance >= kNear_m)) return std::nullopt;
+  return (position_ + distance * ray).head<2>();
+}
+
 std::vector<Vector2d> Camera::ProjectPolygon(const std::vector<Vector3d>& polygon) const {
   std::vector<Vector2d> pixels;
   for (std::size_t i = 0; i < polygon.size(); ++i) {

@@ -22,6 +22,9 @@ class Camera {
   /// Nothing for points that are not in front of the camera.
   [[nodiscard]] std::optional<Eigen::Vector2d> Project(const Eigen::Vector3d& point) const;
 
+  /// The place of the floor (z = 0) that a pixel shows; nothing at and above the horizon.
+  [[nodiscard]] std::optional<Eigen::Vector2d> FloorAt(const Eigen::Vector2d& pixel) const;
+
   /// A polygon, without what is not in front of the camera.
   [[nodiscard]] std::vector<Eigen::Vector2d> ProjectPolygon(
       const std::vector<Eigen::Vector3d>& polygon) const;

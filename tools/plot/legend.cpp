@@ -9,8 +9,10 @@ namespace clearway::plot {
 namespace {
 
 constexpr double kRow_px = 19.0;
-constexpr double kKeyColumn_px = 240.0;
+constexpr double kKeyColumn_px = 248.0;
 constexpr TextStyle kText{.size_px = 13.0, .colour = kTextGrey};
+
+const std::string kMissing = "\u2013 not known";
 
 // A sign and its meaning.
 struct Key {
@@ -34,8 +36,11 @@ std::vector<Eigen::Vector2d> Polygon(const Rect& r) {
 void AddPointKeys(const ScanPicture& picture, std::vector<Key>& keys) {
   for (const PointLayer& layer : LayersOf(picture)) {
     const Colour colour = layer.colour.WithOpacity(1.0);
+    const bool is_missing = picture.missing.Contains(layer.layer);
+    const bool is_below = layer.points == &picture.below_floor_points;
+    if (is_missing && is_below) continue;  // It comes with the obstacle points.
     keys.push_back(
-        {std::string(layer.name) + "  " + Grouped(layer.points->size()),
+        {std::string(layer.name) + "  " + (is_missing ? kMissing : Grouped(layer.points->size())),
          [colour](Canvas& canvas, const Rect& sign) {
            for (const double share : {0.15, 0.4, 0.65, 0.9}) {
              const double lift = share > 0.3 && share < 0.8 ? 0.3 : 0.7;
@@ -48,21 +53,26 @@ void AddPointKeys(const ScanPicture& picture, std::vector<Key>& keys) {
 }
 
 void AddShapeKeys(const ScanPicture& picture, std::vector<Key>& keys) {
-  keys.push_back({"detections  " + Grouped(picture.detections.size()) + ": hull, box, + mean",
-                  [](Canvas& canvas, const Rect& sign) {
-                    canvas.FillPolygon(Polygon(sign), kPurple.WithOpacity(0.35));
-                    canvas.StrokePolygon(Polygon(sign), {kDarkPurple, 1.6});
-                  }});
-  if (!picture.truth_boxes.empty()) {
-    keys.push_back({"ground truth  " + Grouped(picture.truth_boxes.size()),
-                    [](Canvas& canvas, const Rect& sign) {
-                      canvas.StrokePolygon(Polygon(sign), {kTextGrey, 1.3, true});
-                    }});
+  if (!picture.hidden.Contains(Layer::kDetections)) {
+    const bool is_missing = picture.missing.Contains(Layer::kDetections);
+    keys.push_back(
+        {"detections  " +
+             (is_missing ? kMissing : Grouped(picture.detections.size()) + ": hull, box, + mean"),
+         [](Canvas& canvas, const Rect& sign) {
+           canvas.FillPolygon(Polygon(sign), kPurple.WithOpacity(0.35));
+           canvas.StrokePolygon(Polygon(sign), {kDarkPurple, 1.6});
+         }});
+  }
+  if (!TruthBoxesOf(picture).empty()) {
+    keys.push_back(
+        {"labels  " + Grouped(TruthBoxesOf(picture).size()), [](Canvas& canvas, const Rect& sign) {
+           canvas.StrokePolygon(Polygon(sign), {kBlack, 1.4, true});
+         }});
   }
   for (const CorridorState state :
        {CorridorState::kFree, CorridorState::kLimited, CorridorState::kStop}) {
-    const auto count = std::count_if(picture.corridors.begin(),
-                                     picture.corridors.end(),
+    const auto count = std::count_if(CorridorsOf(picture).begin(),
+                                     CorridorsOf(picture).end(),
                                      [&](const auto& c) { return c.state == state; });
     if (count == 0) continue;
     const CorridorLook look = LookOf(state);
@@ -77,6 +87,28 @@ void AddShapeKeys(const ScanPicture& picture, std::vector<Key>& keys) {
        [](Canvas& canvas, const Rect& sign) {
          canvas.FillCircle({sign.x + 0.5 * sign.width, sign.y + 0.5 * sign.height}, 3.2, kBlack);
        }});
+}
+
+void AddMapKeys(const ScanPicture& picture, std::vector<Key>& keys) {
+  if (picture.hidden.Contains(Layer::kMap)) return;
+  if (!picture.map) {
+    if (picture.missing.Contains(Layer::kMap)) {
+      keys.push_back({"map  " + kMissing, [](Canvas& canvas, const Rect& sign) {
+                        canvas.FillRect(sign, kOccupiedGrey);
+                      }});
+    }
+    return;
+  }
+  keys.push_back({"map: occupied",
+                  [](Canvas& canvas, const Rect& sign) { canvas.FillRect(sign, kOccupiedGrey); }});
+  keys.push_back({"map: unknown, or off it", [](Canvas& canvas, const Rect& sign) {
+                    canvas.FillRect(sign, kUnknownTint);
+                    for (double x = 0.0; x + 9.0 < sign.width; x += 7.0) {
+                      canvas.StrokeLine({sign.x + x, sign.y + sign.height},
+                                        {sign.x + x + 12.0, sign.y},
+                                        {kUnknownHatch, 1.2});
+                    }
+                  }});
 }
 
 // Lines from top to bottom, with a note in the last row where they do not fit.
@@ -101,6 +133,7 @@ void DrawLegend(Canvas& canvas,
   std::vector<Key> keys;
   AddPointKeys(picture, keys);
   AddShapeKeys(picture, keys);
+  AddMapKeys(picture, keys);
   const auto rows = static_cast<std::size_t>(strip.height / kRow_px);
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const double x = strip.x + kKeyColumn_px * static_cast<double>(i / rows);

@@ -16,9 +16,14 @@ inline constexpr Colour kBlue{0.0, 0.447, 0.698};
 inline constexpr Colour kVermillion{0.835, 0.369, 0.0};
 inline constexpr Colour kPurple{0.800, 0.475, 0.655};
 inline constexpr Colour kDarkPurple{0.56, 0.20, 0.42};
+inline constexpr Colour kBrown{0.45, 0.25, 0.05};
 inline constexpr Colour kTextGrey{0.25, 0.25, 0.25};
 inline constexpr Colour kGridGrey{0.86, 0.86, 0.86};
 inline constexpr Colour kPointGrey{0.62, 0.62, 0.62};
+inline constexpr Colour kOccupiedGrey{0.45, 0.43, 0.41};
+inline constexpr Colour kBetweenGrey{0.80, 0.78, 0.76};
+inline constexpr Colour kUnknownTint{0.945, 0.95, 0.96};
+inline constexpr Colour kUnknownHatch{0.86, 0.88, 0.91};
 inline constexpr Colour kPanel{0.985, 0.985, 0.98};
 
 }  // namespace clearway::plot

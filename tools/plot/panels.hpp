@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,22 +44,67 @@ void DrawLegend(Canvas& canvas,
 
 /// One kind of points: what both panels draw, in this order.
 struct PointLayer {
+  Layer layer;
   const char* name;
   const std::vector<Eigen::Vector3f>* points;
   Colour colour;
   int size_px;
 };
 
-/// Layers from the lowest to the uppermost.
+/// Layers from the lowest to the uppermost, without those that are hidden, and without
+/// outliers when there are none. Raw points are pale
+/// where the points that were taken out can be told from those that are left.
 [[nodiscard]] inline std::vector<PointLayer> LayersOf(const ScanPicture& picture) {
+  constexpr std::size_t kManyPoints = 3000;
   const bool is_dense = picture.raw_points.size() > 40'000;
-  return {{"raw points", &picture.raw_points, kPointGrey.WithOpacity(0.55), is_dense ? 1 : 2},
-          {"floor", &picture.floor_points, kSkyBlue.WithOpacity(0.6), 2},
-          {"obstacle points", &picture.obstacle_points, kBlue.WithOpacity(0.9), 2},
-          {"below the floor",
-           &picture.below_floor_points,
-           kOrange,
-           picture.below_floor_points.size() > 1000 ? 2 : 4}};
+  std::vector<PointLayer> layers = {
+      {Layer::kRaw,
+       "raw points",
+       &picture.raw_points,
+       kPointGrey.WithOpacity(picture.map_points.empty() ? 0.55 : 0.35),
+       is_dense ? 1 : 2},
+      {Layer::kFloor, "floor", &picture.floor_points, kSkyBlue.WithOpacity(0.6), 2},
+      {Layer::kRemovedByMap,
+       "removed by map",
+       &picture.map_points,
+       kGreen.WithOpacity(0.8),
+       picture.map_points.size() > kManyPoints ? 1 : 2},
+      {Layer::kOutliers, "outliers", &picture.outlier_points, kBrown, 3},
+      {Layer::kObstacles,
+       "obstacle points",
+       &picture.obstacle_points,
+       kBlue.WithOpacity(0.9),
+       picture.obstacle_points.size() > kManyPoints ? 2 : 3},
+      {Layer::kObstacles,
+       "below the floor",
+       &picture.below_floor_points,
+       kOrange,
+       picture.below_floor_points.size() > 1000 ? 2 : 4}};
+  std::erase_if(layers, [&](const PointLayer& layer) {
+    const bool is_rare = layer.layer == Layer::kOutliers && layer.points->empty();
+    return is_rare || picture.hidden.Contains(layer.layer);
+  });
+  return layers;
+}
+
+/// The map, when there is one and it is to be shown; else null.
+[[nodiscard]] inline const PictureMap* MapOf(const ScanPicture& picture) {
+  const bool is_shown = picture.map && !picture.hidden.Contains(Layer::kMap);
+  return is_shown ? &*picture.map : nullptr;
+}
+
+/// What is to be shown of each kind.
+[[nodiscard]] inline std::span<const PictureDetection> DetectionsOf(const ScanPicture& picture) {
+  if (picture.hidden.Contains(Layer::kDetections)) return {};
+  return picture.detections;
+}
+[[nodiscard]] inline std::span<const PictureCorridor> CorridorsOf(const ScanPicture& picture) {
+  if (picture.hidden.Contains(Layer::kCorridor)) return {};
+  return picture.corridors;
+}
+[[nodiscard]] inline std::span<const PictureTruthBox> TruthBoxesOf(const ScanPicture& picture) {
+  if (picture.hidden.Contains(Layer::kLabels)) return {};
+  return picture.truth_boxes;
 }
 
 /// How a corridor's state looks.

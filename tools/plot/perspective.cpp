@@ -8,6 +8,7 @@
 
 #include "tools/plot/camera.hpp"
 #include "tools/plot/label_placer.hpp"
+#include "tools/plot/map_underlay.hpp"
 #include "tools/plot/panels.hpp"
 
 namespace clearway::plot {
@@ -38,18 +39,19 @@ class Perspective {
 
   PanelReport Draw(const ScanPicture& picture) {
     canvas_.FillRect(area_, kPanel);
+    if (const PictureMap* const map = MapOf(picture)) DrawMap(canvas_, area_, *map, View());
     canvas_.BeginClip(area_);
     DrawGrid();
-    for (const PictureCorridor& corridor : picture.corridors) DrawCorridor(corridor);
+    for (const PictureCorridor& corridor : CorridorsOf(picture)) DrawCorridor(corridor);
     DrawTops(picture);
     DrawPoints(picture);
     DrawVehicle(picture);
-    for (const PictureTruthBox& box : picture.truth_boxes) {
+    for (const PictureTruthBox& box : TruthBoxesOf(picture)) {
       const float half_m = 0.5F * box.height_m;
       DrawPrism(Corners(box.center.head<2>(), box.length_m, box.width_m, box.yaw_rad),
                 box.center.z() - half_m,
                 box.center.z() + half_m,
-                {kTextGrey, 1.1, true});
+                {kBlack, 1.4, true});
     }
     DrawDetections(picture);
     DrawRanges();
@@ -62,6 +64,28 @@ class Perspective {
   void DrawSegment(const Vector3d& from, const Vector3d& to, const Pen& pen) {
     const std::vector<Vector2d> ends = camera_.ProjectPolygon({from, to});
     canvas_.StrokePolygon(ends, pen);
+  }
+
+  // The floor within the region and half as much again on each side: a map ends less abruptly.
+  [[nodiscard]] FloorView View() const {
+    const Vector2d low(region_.x_min_m, region_.y_min_m);
+    const Vector2d high(region_.x_max_m, region_.y_max_m);
+    const Vector2d margin = 0.5 * (high - low);
+    const Vector2d outer_low = low - margin;
+    const Vector2d outer_high = high + margin;
+    return {.floor_at =
+                [this, outer_low, outer_high](const Vector2d& pixel) -> std::optional<Vector2d> {
+              const std::optional<Vector2d> point = camera_.FloorAt(pixel);
+              const bool is_shown = point && (point->array() >= outer_low.array()).all() &&
+                                    (point->array() <= outer_high.array()).all();
+              return is_shown ? point : std::nullopt;
+            },
+            .pixel_at =
+                [this](const Vector2d& point) {
+                  return camera_.Project({point.x(), point.y(), 0.0});
+                },
+            .low = outer_low,
+            .high = outer_high};
   }
 
   // The floor's grid, over the region.
@@ -154,7 +178,7 @@ class Perspective {
 
   // Upper faces, below the points so that these keep their colours.
   void DrawTops(const ScanPicture& picture) {
-    for (const PictureDetection& d : picture.detections) {
+    for (const PictureDetection& d : DetectionsOf(picture)) {
       const auto corners = Corners(d.center, d.length_m, d.width_m, d.yaw_rad);
       canvas_.FillPolygon(camera_.ProjectPolygon(Lift(corners, d.z_max_m)),
                           kPurple.WithOpacity(0.22));
@@ -164,7 +188,7 @@ class Perspective {
   // Far ones first, so that near ones lie on top; labels from near to far.
   void DrawDetections(const ScanPicture& picture) {
     std::vector<const PictureDetection*> order;
-    for (const PictureDetection& detection : picture.detections) order.push_back(&detection);
+    for (const PictureDetection& detection : DetectionsOf(picture)) order.push_back(&detection);
     std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) {
       return a->center.x() > b->center.x();
     });

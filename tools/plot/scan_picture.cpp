@@ -16,9 +16,9 @@ namespace clearway::plot {
 namespace {
 
 constexpr Rect kTitle{16.0, 8.0, 1568.0, 28.0};
-constexpr Rect kBirdsEye{8.0, 62.0, 784.0, 698.0};
-constexpr Rect kPerspective{808.0, 62.0, 776.0, 660.0};
-constexpr Rect kLegend{24.0, 774.0, 1560.0, 118.0};
+constexpr Rect kBirdsEye{8.0, 62.0, 784.0, 660.0};
+constexpr Rect kPerspective{808.0, 62.0, 776.0, 622.0};
+constexpr Rect kLegend{24.0, 738.0, 1560.0, 154.0};
 
 void DrawTitles(Canvas& canvas, const std::string& title) {
   constexpr TextStyle kLarge{.size_px = 20.0, .colour = kBlack, .is_bold = true};
@@ -59,10 +59,17 @@ void WritePng(const ScanPicture& picture, const std::filesystem::path& path) {
   const PanelReport behind = DrawPerspective(canvas, kPerspective, picture, region);
 
   std::vector<std::string> remarks = {"grid " + StepLabel(above.grid_step_m, above.grid_step_m) +
-                                          " m, in perspective " +
-                                          StepLabel(behind.grid_step_m, behind.grid_step_m) + " m",
-                                      OutsideRemark("bird's eye", above),
-                                      OutsideRemark("perspective", behind)};
+                                      " m, in perspective " +
+                                      StepLabel(behind.grid_step_m, behind.grid_step_m) + " m"};
+  if (!picture.hidden.Contains(Layer::kRaw) && !picture.missing.Contains(Layer::kRaw)) {
+    remarks.push_back(OutsideRemark("bird's eye", above));
+    remarks.push_back(OutsideRemark("perspective", behind));
+  }
+  std::string hidden;
+  for (const auto& [name, layer] : kLayerNames) {
+    if (picture.hidden.Contains(layer)) hidden += (hidden.empty() ? "" : ", ") + std::string(name);
+  }
+  if (!hidden.empty()) remarks.push_back("not drawn: " + hidden);
   const std::size_t left_out = above.num_labels_left_out + behind.num_labels_left_out;
   if (left_out > 0) remarks.push_back(std::to_string(left_out) + " labels left out: no room");
   DrawLegend(canvas, kLegend, picture, remarks);

@@ -3,10 +3,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "common/core/mapping/occupancy_grid.hpp"
+#include "tools/plot/layers.hpp"
 
 namespace clearway::plot {
 
@@ -43,6 +49,12 @@ struct PictureTruthBox {
   std::string label;  ///< May be empty.
 };
 
+/// The static map under the vehicle.
+struct PictureMap {
+  std::shared_ptr<const core::OccupancyGrid> grid;  ///< Not null; valid, with all of its cells.
+  Eigen::Isometry3d T_map_vehicle = Eigen::Isometry3d::Identity();
+};
+
 /// One scan and what was made of it. Everything is in the vehicle frame (x forward, y left, z up,
 /// floor near z = 0), in metres. Every part may be empty. Points and shapes with a coordinate that
 /// is not finite are not drawn.
@@ -50,6 +62,8 @@ struct ScanPicture {
   std::string title;
   std::vector<Eigen::Vector3f> raw_points;
   std::vector<Eigen::Vector3f> floor_points;
+  std::vector<Eigen::Vector3f> map_points;          ///< Taken out: the map explains them.
+  std::vector<Eigen::Vector3f> outlier_points;      ///< Taken out: too few neighbours.
   std::vector<Eigen::Vector3f> obstacle_points;     ///< What is left after preprocessing.
   std::vector<Eigen::Vector3f> below_floor_points;  ///< The rest of what is left: holes, steps.
   std::vector<PictureDetection> detections;
@@ -57,8 +71,15 @@ struct ScanPicture {
   std::vector<Eigen::Vector2f> footprint;  ///< Of the robot; in order, not closed.
   Eigen::Vector3f sensor_origin = Eigen::Vector3f::Zero();
   std::vector<PictureTruthBox> truth_boxes;
+  std::optional<PictureMap> map;
 
-  /// Short lines for the legend: scan id, permit and its reason, times. About 60 characters and 9
+  /// Not drawn and not in the legend. What is in view does not depend on it.
+  LayerSet hidden;
+
+  /// Of these nothing is known: the legend says so in place of a count.
+  LayerSet missing;
+
+  /// Short lines for the legend: scan id, permit and its reason, times. About 90 characters and 8
   /// lines fit; what does not fit is cut and marked so.
   std::vector<std::string> text_lines;
 };

@@ -35,6 +35,8 @@ std::vector<LevelPoint> PointsOf(const ScanPicture& picture) {
   add(picture.raw_points);
   if (!points.empty()) return points;
   add(picture.floor_points);
+  add(picture.map_points);
+  add(picture.outlier_points);
   add(picture.obstacle_points);
   add(picture.below_floor_points);
   for (const PictureDetection& detection : picture.detections) add({detection.centroid});

@@ -63,6 +63,10 @@ void GraphRun::Listen() {
   });
   node_.Subscribe<obstacle_points_t>(channels::kObstaclePoints,
                                      [this](const auto& m) { statistics_.OnObstaclePoints(m); });
+  node_.Subscribe<removed_points_t>(channels::kRemovedPoints,
+                                    [this](const auto& m) { statistics_.OnRemovedPoints(m); });
+  node_.Subscribe<pose_t>(channels::kPose, [this](const auto& m) { statistics_.OnPose(m); });
+  node_.Subscribe<map_tile_t>(channels::kMap, [this](const auto& m) { statistics_.OnMap(m); });
   node_.Subscribe<floor_t>(channels::kFloor, [this](const auto& m) { statistics_.OnFloor(m); });
   node_.Subscribe<detections_t>(channels::kDetections, [this](const auto& m) {
     statistics_.OnDetections(m, runtime_.MonotonicUs());

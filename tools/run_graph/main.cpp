@@ -130,13 +130,9 @@ RunSettings SettingsOf(const Arguments& arguments, const graph::GraphConfig& con
 void Report(const Arguments& arguments, const graph::GraphConfig& config, const GraphRun& run) {
   const RunSummary summary = run.statistics().Summarise();
   std::fputs(FormatTable(summary, run.machine_use()).c_str(), stdout);
-  if (const ScanRecord* const scan = run.statistics().LastDetectedScan()) {
+  if (run.statistics().LastDetectedScan() != nullptr) {
     const fs::path picture = arguments.output / kPicture;
-    plot::WritePng(MakePicture(*scan,
-                               run.statistics().last_permit(),
-                               config.vehicle,
-                               config.preprocessor.floor.distance_threshold_m),
-                   picture);
+    plot::WritePng(MakePicture(run.statistics(), config), picture);
     std::printf("\npicture of the last scan: %s\n", picture.c_str());
   }
   if (arguments.json.empty()) return;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/core/scan/scan_assembler.hpp"
+#include "common/messages/pose.hpp"
 
 namespace clearway::run_graph {
 namespace {
@@ -42,6 +42,13 @@ ScanRecord& RunStatistics::Record(ScanKey key) {
   return record;
 }
 
+ScanRecord* RunStatistics::RecordThatEnds(std::int64_t end_utime) {
+  const auto found = std::find_if(recent_.begin(), recent_.end(), [&](const auto& record) {
+    return plot::StampsOf(record.second).end_utime == end_utime;
+  });
+  return found == recent_.end() ? nullptr : &found->second;
+}
+
 bool RunStatistics::IsWhole(const Arrivals& arrivals) {
   return std::all_of(arrivals.by_sensor.begin(), arrivals.by_sensor.end(), [](const auto& sensor) {
     return static_cast<std::int64_t>(sensor.second.seen.size()) == sensor.second.count;
@@ -63,12 +70,11 @@ void RunStatistics::OnLidarPoints(const lidar_points_t& message, std::int64_t ar
   waiting_.push_back(
       {message.sensor, message.scan_id, message.slice_index, message.scan_utime, arrival_us});
   if (waiting_.size() > kMaxWaitingSlices) waiting_.pop_front();
-  ScanRecord& record = Record(message.scan_utime);
-  if (record.raw.size() < static_cast<std::size_t>(core::kMaxSlices)) record.raw.push_back(message);
+  Record(message.scan_utime).Add(message);
 }
 
 void RunStatistics::OnObstaclePoints(const obstacle_points_t& message) {
-  Record(message.scan_utime).obstacles.push_back(message);
+  Record(message.scan_utime).Add(message);
   if (message.slice_index != 0) return;
   ++obstacle_scans_;
   processing_ms_["preprocessor"].push_back(Milliseconds(message.processing_us));
@@ -81,17 +87,24 @@ void RunStatistics::OnObstaclePoints(const obstacle_points_t& message) {
   }
 }
 
+void RunStatistics::OnRemovedPoints(const removed_points_t& message) {
+  if (ScanRecord* const record = RecordThatEnds(message.utime)) record->Add(message);
+}
+
 void RunStatistics::OnFloor(const floor_t& message) {
-  for (auto& [key, record] : recent_) {
-    if (!record.raw.empty() && record.raw.front().scan_end_utime == message.utime) {
-      record.floor = message;
-    }
-  }
+  if (ScanRecord* const record = RecordThatEnds(message.utime)) record->Add(message);
+}
+
+void RunStatistics::OnPose(const pose_t& message) {
+  poses_.Add(message.utime, messages::T_map_vehicle(message));
 }
 
 void RunStatistics::OnDetections(const detections_t& message, std::int64_t arrival_us) {
   const ScanKey key = message.scan_utime;
-  Record(key).detections.push_back(message);
+  ScanRecord& record = Record(key);
+  record.Add(message);
+  // The pose that the preprocessor had, or a better one: this comes after the scan's end.
+  if (!record.T_map_vehicle) record.T_map_vehicle = poses_.Lookup(message.utime);
   if (message.slice_index == 0) {
     processing_ms_["clusterer"].push_back(Milliseconds(message.processing_us));
     if (message.scan_state == detections_t::SCAN_INCOMPLETE) ++incomplete_;
@@ -122,6 +135,8 @@ void RunStatistics::OnDrivePermit(const drive_permit_t& message, std::int64_t ar
       });
   if (answered == waiting_.end()) return;
   guarded_scans_.insert(answered->scan);
+  const auto record = recent_.find(answered->scan);
+  if (record != recent_.end()) record->second.Add(message);
   for (auto slice = waiting_.begin(); slice != std::next(answered); ++slice) {
     slice_to_permit_ms_.push_back(Milliseconds(arrival_us - slice->arrival_us));
   }

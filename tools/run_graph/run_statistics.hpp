@@ -15,8 +15,15 @@
 #include <clearway/drive_permit_t.hpp>
 #include <clearway/floor_t.hpp>
 #include <clearway/lidar_points_t.hpp>
+#include <clearway/map_tile_t.hpp>
 #include <clearway/obstacle_points_t.hpp>
+#include <clearway/pose_t.hpp>
+#include <clearway/removed_points_t.hpp>
 #include <clearway/status_t.hpp>
+
+#include "common/core/geometry/pose_buffer.hpp"
+#include "tools/plot/map_collector.hpp"
+#include "tools/plot/scan_messages.hpp"
 
 namespace clearway::run_graph {
 
@@ -29,12 +36,7 @@ struct Quantiles {
 [[nodiscard]] std::optional<Quantiles> QuantilesOf(std::vector<double> values);
 
 /// The messages of one scan, as far as they came.
-struct ScanRecord {
-  std::vector<lidar_points_t> raw;
-  std::vector<obstacle_points_t> obstacles;
-  std::vector<detections_t> detections;
-  std::optional<floor_t> floor;
-};
+using ScanRecord = plot::ScanMessages;
 
 /// One process over the whole run.
 struct StageSummary {
@@ -63,7 +65,10 @@ class RunStatistics {
  public:
   void OnLidarPoints(const lidar_points_t& message, std::int64_t arrival_us);
   void OnObstaclePoints(const obstacle_points_t& message);
+  void OnRemovedPoints(const removed_points_t& message);
   void OnFloor(const floor_t& message);
+  void OnPose(const pose_t& message);
+  void OnMap(const map_tile_t& message) { map_.Add(message); }
   void OnDetections(const detections_t& message, std::int64_t arrival_us);
   void OnDrivePermit(const drive_permit_t& message, std::int64_t arrival_us);
   void OnStatus(const status_t& message);
@@ -72,6 +77,9 @@ class RunStatistics {
 
   /// The newest scan with DETECTIONS, for a picture; nothing when there was none.
   [[nodiscard]] const ScanRecord* LastDetectedScan() const;
+
+  /// The static map, as far as it came.
+  [[nodiscard]] plot::CollectedMap map() const { return map_.Get(); }
   [[nodiscard]] const std::optional<drive_permit_t>& last_permit() const { return last_permit_; }
 
   /// The newest status of a process; null when there was none.
@@ -110,6 +118,7 @@ class RunStatistics {
 
   [[nodiscard]] static bool IsWhole(const Arrivals& arrivals);
   ScanRecord& Record(ScanKey key);
+  ScanRecord* RecordThatEnds(std::int64_t end_utime);
 
   std::map<ScanKey, Arrivals> arrivals_;
   std::map<ScanKey, ScanRecord> recent_;
@@ -132,6 +141,8 @@ class RunStatistics {
   double sum_floor_ = 0.0;
   double sum_map_ = 0.0;
   double sum_detections_ = 0.0;
+  core::PoseBuffer poses_;
+  plot::MapCollector map_;
   std::optional<drive_permit_t> last_permit_;
   std::optional<std::int64_t> last_input_us_;
 };

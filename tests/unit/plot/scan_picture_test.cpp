@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/plot/scan_picture.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -12,9 +13,11 @@
 #include <stdexcept>
 #include <string>
 
-#include <cairo.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "tests/unit/plot/png_pixels.hpp"
+#include "tools/plot/palette.hpp"
 
 // The leak sanitizer asks for this: fontconfig keeps what it read about the fonts.
 extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
@@ -48,25 +51,17 @@ class ScanPictureTest : public testing::Test {
 struct Image {
   int width = 0;
   int height = 0;
-  std::set<std::uint32_t> colours_left;   // Of the bird's eye panel.
-  std::set<std::uint32_t> colours_right;  // Of the perspective panel.
+  std::set<std::uint32_t> colours_left = {};   // Of the bird's eye panel.
+  std::set<std::uint32_t> colours_right = {};  // Of the perspective panel.
 };
 
 Image Read(const std::filesystem::path& path) {
-  const std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface(
-      cairo_image_surface_create_from_png(path.c_str()), cairo_surface_destroy);
-  Image image;
-  if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) return image;
-  image.width = cairo_image_surface_get_width(surface.get());
-  image.height = cairo_image_surface_get_height(surface.get());
-  const int stride = cairo_image_surface_get_stride(surface.get());
-  const unsigned char* data = cairo_image_surface_get_data(surface.get());
-  for (int y = 70; y < 700; ++y) {
+  const test::PngPixels pixels = test::ReadPng(path);
+  Image image{.width = pixels.width, .height = pixels.height};
+  for (int y = 70; y < std::min(680, pixels.height); ++y) {
     for (int x = 60; x < image.width - 30; ++x) {
-      const unsigned char* p = data + y * stride + 4 * x;
-      const std::uint32_t colour = p[0] + 256U * p[1] + 65536U * p[2];
-      if (x < 780) image.colours_left.insert(colour);
-      if (x > 820) image.colours_right.insert(colour);
+      if (x < 780) image.colours_left.insert(pixels.At(x, y));
+      if (x > 820) image.colours_right.insert(pixels.At(x, y));
     }
   }
   return image;
@@ -89,6 +84,8 @@ ScanPicture SmallScene() {
     picture.floor_points.emplace_back(0.002F * static_cast<float>(i), across, 0.0F);
   }
   picture.below_floor_points = {{2.0F, 1.0F, -0.3F}};
+  picture.map_points = {{1.0F, 1.5F, 0.4F}};
+  picture.outlier_points = {{1.5F, -1.5F, 0.4F}};
   picture.detections = {{.hull = {{2.9F, -0.1F}, {3.1F, -0.1F}, {3.0F, 0.1F}},
                          .center = {3.0F, 0.0F},
                          .length_m = 0.2F,
@@ -106,6 +103,16 @@ ScanPicture SmallScene() {
                           .height_m = 0.4F,
                           .label = "crate"}};
   picture.text_lines = {"scan 1", "permit: 0 m/s"};
+  return picture;
+}
+
+// With a map of two cells. Drawing one takes its time under sanitizers.
+ScanPicture SmallSceneOnMap() {
+  ScanPicture picture = SmallScene();
+  auto grid = std::make_shared<core::OccupancyGrid>();
+  grid->geometry = {.width = 2, .height = 1, .resolution_m = 0.5, .origin_x_m = 1.0};
+  grid->cells = {core::OccupancyGrid::kOccupied, core::OccupancyGrid::kFree};
+  picture.map = PictureMap{.grid = grid};
   return picture;
 }
 
@@ -143,6 +150,8 @@ TEST_F(ScanPictureTest, ShowsEveryPartOfThePicture) {
   expect_difference([](ScanPicture& p) { p.floor_points.pop_back(); });
   expect_difference([](ScanPicture& p) { p.obstacle_points.clear(); });
   expect_difference([](ScanPicture& p) { p.below_floor_points.clear(); });
+  expect_difference([](ScanPicture& p) { p.map_points.clear(); });
+  expect_difference([](ScanPicture& p) { p.outlier_points.clear(); });
   expect_difference([](ScanPicture& p) { p.detections.clear(); });
   expect_difference([](ScanPicture& p) { p.detections[0].label.clear(); });
   expect_difference([](ScanPicture& p) { p.detections[0].z_max_m = 0.8F; });
@@ -152,6 +161,67 @@ TEST_F(ScanPictureTest, ShowsEveryPartOfThePicture) {
   expect_difference([](ScanPicture& p) { p.sensor_origin.x() = 0.5F; });
   expect_difference([](ScanPicture& p) { p.truth_boxes.clear(); });
   expect_difference([](ScanPicture& p) { p.text_lines.pop_back(); });
+}
+
+TEST_F(ScanPictureTest, ShowsTheMapWhereThePoseSays) {
+  ScanPicture picture = SmallSceneOnMap();
+  WritePng(picture, File("here.png"));
+  picture.map->T_map_vehicle.translation().x() = 1.0;
+  WritePng(picture, File("there.png"));
+
+  EXPECT_TRUE(Read(File("here.png")).colours_left.contains(test::ColourCode(kOccupiedGrey)));
+  EXPECT_NE(Bytes(File("here.png")), Bytes(File("there.png")));
+}
+
+TEST_F(ScanPictureTest, LeavesOutTheLayersThatAreHiddenAndNothingElse) {
+  // A colour in the bird's eye panel that only this layer has.
+  struct Case {
+    Layer layer;
+    Colour colour;
+  };
+  constexpr Case kCases[] = {
+      {Layer::kMap, kOccupiedGrey}, {Layer::kOutliers, kBrown}, {Layer::kObstacles, kOrange}};
+  for (const Case& hidden : kCases) {
+    ScanPicture picture = SmallSceneOnMap();
+    picture.hidden = {hidden.layer};
+
+    WritePng(picture, File("hidden.png"));
+
+    const Image image = Read(File("hidden.png"));
+    for (const Case& other : kCases) {
+      EXPECT_EQ(image.colours_left.contains(test::ColourCode(other.colour)),
+                other.layer != hidden.layer)
+          << static_cast<int>(hidden.layer) << " " << static_cast<int>(other.layer);
+    }
+  }
+}
+
+TEST_F(ScanPictureTest, WithAllLayersHiddenHasNoneOfThem) {
+  ScanPicture hidden = SmallSceneOnMap();
+  for (const auto& [name, layer] : kLayerNames) hidden.hidden.Add(layer);
+  ScanPicture poor;  // What is left: the vehicle, and the view that the points chose.
+  poor.title = hidden.title;
+  poor.raw_points = hidden.raw_points;
+  poor.footprint = hidden.footprint;
+  poor.text_lines = hidden.text_lines;
+  poor.hidden = hidden.hidden;
+
+  WritePng(hidden, File("hidden.png"));
+  WritePng(poor, File("poor.png"));
+
+  EXPECT_EQ(Bytes(File("hidden.png")), Bytes(File("poor.png")));
+}
+
+TEST_F(ScanPictureTest, SaysOfALayerThatItIsMissingInPlaceOfACount) {
+  ScanPicture picture;
+  WritePng(picture, File("none.png"));
+  const std::string none = Bytes(File("none.png"));
+
+  for (const Layer layer : {Layer::kRaw, Layer::kObstacles, Layer::kDetections, Layer::kMap}) {
+    picture.missing = {layer};
+    WritePng(picture, File("missing.png"));
+    EXPECT_NE(Bytes(File("missing.png")), none) << static_cast<int>(layer);
+  }
 }
 
 TEST_F(ScanPictureTest, OfNothingIsStillAPicture) {
