@@ -2,6 +2,7 @@
 #include "common/messages/map_tiles.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/core/mapping/run_length.hpp"
 
@@ -59,8 +60,8 @@ std::optional<core::MapTile> FromLcm(const map_tile_t& message) {
   tile.rectangle = {message.tile_x, message.tile_y, message.tile_width, message.tile_height};
   tile.map_checksum = static_cast<std::uint32_t>(message.map_checksum);
   const bool is_sound = tile.geometry.IsValid() && message.encoding == map_tile_t::ENCODING_RLE &&
-                        message.tile_x >= 0 && message.tile_y >= 0 && message.tile_width > 0 &&
-                        message.tile_height > 0 &&
+                        std::in_range<std::uint32_t>(message.map_checksum) && message.tile_x >= 0 &&
+                        message.tile_y >= 0 && message.tile_width > 0 && message.tile_height > 0 &&
                         message.tile_width <= message.map_width - message.tile_x &&
                         message.tile_height <= message.map_height - message.tile_y;
   if (!is_sound) return std::nullopt;

@@ -8,20 +8,13 @@
 #include <clearway/pose_t.hpp>
 
 #include "common/core/geometry/pose_source.hpp"
+#include "common/messages/rigid_pose.hpp"
 
 namespace clearway::messages {
 
-/// The pose of a POSE message. A quaternion of length zero gives NaN, which PoseBuffer refuses.
+/// The pose of a POSE message; see RigidPose() for what is no pose.
 [[nodiscard]] inline Eigen::Isometry3d T_map_vehicle(const pose_t& message) {
-  const Eigen::Quaterniond orientation(message.orientation[0],
-                                       message.orientation[1],
-                                       message.orientation[2],
-                                       message.orientation[3]);
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = Eigen::Matrix3d(
-      Eigen::Quaterniond(orientation.coeffs() / orientation.norm()).toRotationMatrix());
-  pose.translation() = Eigen::Vector3d(message.pos[0], message.pos[1], message.pos[2]);
-  return pose;
+  return RigidPose(message.pos, message.orientation);
 }
 
 /// A POSE message; velocities and accelerations are 0: not known.

@@ -49,26 +49,35 @@ void MapClient::OnServerStatus(const status_t& status) {
   }
   if (announced_ == version) return;
   announced_ = version;
+  // What the assembler knows of versions that gave way is of no use: the server's word counts.
+  assembler_ = core::MapAssembler();
   last_tile_us_ = now_us - kQuietUs;
   AskForWhatIsMissing();
 }
 
 void MapClient::OnTile(const map_tile_t& message) {
   if (message.layer != map_request_t::LAYER_STATIC) return;
-  auto tile = messages::FromLcm(message);
+  // Before the cells are decoded: a tile for somebody else costs next to nothing.
+  const core::MapVersion version{message.session, message.epoch};
+  if (map_ && map_->version == version) return;  // Somebody else asked for it.
+  if (version != announced_) {
+    ++refused_;
+    return;
+  }
+  const auto tile = messages::FromLcm(message);
   if (!tile) {
     node_.CountInvalid();
     return;
   }
-  if (map_ && map_->version == tile->version) return;  // Somebody else asked for it.
-  if (tile->version != announced_) {
-    ++refused_;
-    return;
-  }
   using Outcome = core::MapAssembler::Outcome;
-  const Outcome outcome = assembler_.Add(*std::move(tile));
+  const Outcome outcome = assembler_.Add(*tile);
   if (outcome == Outcome::kInvalid) node_.CountInvalid();
-  if (outcome == Outcome::kOldVersion || outcome == Outcome::kInconsistent) ++refused_;
+  if (outcome == Outcome::kOldVersion) ++refused_;
+  if (outcome == Outcome::kInconsistent) {
+    // Either this one is wrong or what came before it: only a new start gets out of that.
+    ++refused_;
+    assembler_.Clear();
+  }
   last_tile_us_ = node_.runtime().MonotonicUs();
   Finish();
 }

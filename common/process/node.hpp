@@ -117,11 +117,14 @@ class Node {
     std::int64_t burst;  // 0: alone.
   };
 
-  // What is numbered together: a channel or, where the type names a sensor, that sensor on it.
+  // What is numbered together: a channel or, where the type names a sensor or a client, that one
+  // on it.
   template <typename Message>
   static std::string StreamOf(const std::string& channel, const Message& message) {
     if constexpr (requires { message.sensor; }) {
       return channel + '/' + message.sensor;
+    } else if constexpr (requires { message.client; }) {
+      return channel + '/' + message.client;
     } else {
       return channel;
     }

@@ -16,11 +16,16 @@ constexpr std::int64_t kMissingUs = 500'000;
 // A stamp that goes back by more than this is a source that started anew [us].
 constexpr std::int64_t kRestartUs = 1'000'000;
 
-// When the last shot of a slice was fired [us since the epoch].
-std::int64_t EndOf(const lidar_points_t& slice) {
-  if (slice.slice_count <= 0 || slice.slice_index < 0 || slice.slice_index >= slice.slice_count) {
-    return slice.utime;
-  }
+// Later stamps are none, and differences of two such ones fit.
+constexpr std::int64_t kMaxUtime = std::int64_t{1} << 60;
+
+// When the last shot of a slice was fired [us since the epoch]. Nothing when the slice breaks a
+// rule of the type.
+std::optional<std::int64_t> EndOf(const lidar_points_t& slice) {
+  const bool is_sound = slice.slice_index >= 0 && slice.slice_index < slice.slice_count &&
+                        slice.scan_utime >= 0 && slice.scan_utime <= slice.scan_end_utime &&
+                        slice.scan_end_utime <= kMaxUtime;
+  if (!is_sound) return std::nullopt;
   const std::int64_t remaining = slice.slice_count - slice.slice_index - 1;
   return slice.scan_end_utime -
          (slice.scan_end_utime - slice.scan_utime) / slice.slice_count * remaining;
@@ -42,12 +47,26 @@ PoseSourceProcess::PoseSourceProcess(const core::PoseSourceConfig& config, proce
 // The pose of a vehicle that stands still holds at any time; it is stated for the times at which
 // somebody measures, so that recordings, which have a time of their own, have it too.
 void PoseSourceProcess::OnLidarPoints(const lidar_points_t& message) {
-  const std::int64_t utime = EndOf(message);
-  const bool is_news = !last_utime_ || utime > *last_utime_ || *last_utime_ - utime > kRestartUs;
-  if (is_news) Publish(utime, config_.Start());
+  const std::optional<std::int64_t> utime = EndOf(message);
+  if (!utime) {
+    node_.CountInvalid();
+    return;
+  }
+  const bool is_news = !last_utime_ || *utime > *last_utime_ || *last_utime_ - *utime > kRestartUs;
+  if (is_news) Publish(*utime, config_.Start());
 }
 
 void PoseSourceProcess::OnOdometry(const odometry_t& message) {
+  using core::SequenceVerdict;
+  const std::int64_t session_before = odometry_senders_.session();
+  const SequenceVerdict verdict =
+      odometry_senders_.Observe(message.session, message.sequence, node_.runtime().MonotonicUs());
+  if (verdict == SequenceVerdict::kForeign) return;
+  // A base that started anew counts from another place, whether its clock went back or not.
+  if (verdict == SequenceVerdict::kRestart && message.session != session_before) {
+    odometry_.Clear();
+    dead_reckoning_.OdometryRestarted();
+  }
   const Eigen::Isometry3d T_odom_vehicle = messages::T_odom_vehicle(message);
   using Outcome = core::PoseBuffer::Outcome;
   const Outcome outcome = odometry_.Add(message.utime, T_odom_vehicle);

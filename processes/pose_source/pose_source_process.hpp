@@ -6,6 +6,7 @@
 
 #include "common/core/geometry/pose_buffer.hpp"
 #include "common/core/geometry/pose_source.hpp"
+#include "common/core/scan/sequence_tracker.hpp"
 #include "common/process/node.hpp"
 
 namespace clearway {
@@ -26,6 +27,7 @@ class PoseSourceProcess {
   process::Node& node_;
   core::DeadReckoning dead_reckoning_;
   core::PoseBuffer odometry_;
+  core::SequenceTracker odometry_senders_;
   std::optional<std::int64_t> last_utime_;
   std::int64_t poses_ = 0;
 };

@@ -2,6 +2,8 @@
 #include "processes/preprocessor/preprocessor_process.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "common/messages/lidar_points.hpp"
 #include "common/messages/map_tiles.hpp"
@@ -25,8 +27,8 @@ using messages::channels::kRemovedPoints;
 // Unknown names come from outside: remember a few, so that each is told once.
 constexpr std::size_t kMaxUnknownNames = 16;
 
-// POSE out of order within this time is a second publisher of it [us].
-constexpr std::int64_t kTwoPublishersUs = 1'000'000;
+// Obstacle points that need longer than this to get onto the bus are late [us].
+constexpr std::int64_t kSlowBusUs = 200'000;
 
 std::string Quoted(const std::string& name) {
   std::string text = name.substr(0, core::SensorConfig::kMaxNameLength);
@@ -49,16 +51,15 @@ PreprocessorProcess::PreprocessorProcess(const core::PreprocessorConfig& config,
              [this](const core::AssembledScan& scan) { ProcessScan(scan); }),
       preprocessor_(config, vehicle),
       odometry_(config.odometry),
-      pose_(config.pose) {
+      pose_(config.pose),
+      companions_(node) {
   node_.Subscribe<lidar_points_t>(kLidarPoints, [this](const auto& m) { OnLidarPoints(m); });
   if (!vehicle_.stationary) {
     node_.Subscribe<odometry_t>(kOdometry, [this](const auto& m) { OnOdometry(m); });
   }
   if (config_.map_filter.enabled || config_.local_map.enabled) {
     node_.Subscribe<pose_t>(kPose, [this](const auto& m) { OnPose(m); });
-    node_.Subscribe<pose_status_t>(kPoseStatus, [this](const auto& m) {
-      is_pose_lost_ = m.state == pose_status_t::STATE_LOST;
-    });
+    node_.Subscribe<pose_status_t>(kPoseStatus, [this](const auto& m) { OnPoseStatus(m); });
   }
   if (config_.map_filter.enabled) map_client_.emplace(node_, "preprocessor");
   node_.BeforeStatus([this] { Refresh(); });
@@ -77,30 +78,41 @@ void PreprocessorProcess::OnLidarPoints(const lidar_points_t& message) {
 }
 
 void PreprocessorProcess::OnOdometry(const odometry_t& message) {
+  using core::SequenceVerdict;
+  const std::int64_t session_before = odometry_senders_.session();
+  const SequenceVerdict verdict =
+      odometry_senders_.Observe(message.session, message.sequence, node_.runtime().MonotonicUs());
+  if (verdict == SequenceVerdict::kForeign) return;
+  // A base that started anew has another odom: nothing may be interpolated across.
+  if (verdict == SequenceVerdict::kRestart && message.session != session_before) odometry_.Clear();
   const core::PoseBuffer::Outcome outcome =
       odometry_.Add(message.utime, messages::T_odom_vehicle(message));
   if (outcome == core::PoseBuffer::Outcome::kInvalid) node_.CountInvalid();
 }
 
 void PreprocessorProcess::OnPose(const pose_t& message) {
-  using Outcome = core::PoseBuffer::Outcome;
-  const Outcome outcome = pose_.Add(message.utime, messages::T_map_vehicle(message));
-  if (outcome == Outcome::kInvalid) node_.CountInvalid();
-  if (outcome != Outcome::kOutOfOrder) return;
-  ++poses_out_of_order_;
-  pose_out_of_order_us_ = node_.runtime().MonotonicUs();
+  const core::PoseBuffer::Outcome outcome =
+      pose_.Add(message.utime, messages::T_map_vehicle(message));
+  if (outcome == core::PoseBuffer::Outcome::kInvalid) node_.CountInvalid();
+  pose_trust_.OnPose(message.utime, outcome, node_.runtime().MonotonicUs());
 }
 
-// Two publishers of POSE are believed neither.
-bool PreprocessorProcess::HasTwoPosePublishers() const {
-  return pose_out_of_order_us_ &&
-         node_.runtime().MonotonicUs() - *pose_out_of_order_us_ <= kTwoPublishersUs;
+// A state that the type does not know is no word of trust.
+void PreprocessorProcess::OnPoseStatus(const pose_status_t& message) {
+  const bool is_good =
+      message.state == pose_status_t::STATE_UNCERTAIN || message.state == pose_status_t::STATE_GOOD;
+  if (!is_good && message.state != pose_status_t::STATE_LOST) node_.CountInvalid();
+  pose_trust_.OnStatus(!is_good, message.session, message.sequence, node_.runtime().MonotonicUs());
+}
+
+core::PoseTrust::Doubt PreprocessorProcess::PoseDoubt() const {
+  return pose_trust_.Query(node_.runtime().MonotonicUs());
 }
 
 core::Surroundings PreprocessorProcess::CurrentSurroundings() const {
   return {.odometry = &odometry_,
           .pose = &pose_,
-          .is_pose_lost = is_pose_lost_ || HasTwoPosePublishers(),
+          .is_pose_lost = PoseDoubt() != core::PoseTrust::Doubt::kNone,
           .map = map_client_ ? map_client_->map() : nullptr};
 }
 
@@ -110,11 +122,11 @@ void PreprocessorProcess::ProcessScan(const core::AssembledScan& scan) {
   const std::int64_t duration_us = node_.runtime().MonotonicUs() - begin_us;
 
   node_.Publish(kFloor, messages::ToFloor(result));
-  node_.PublishBurst(
-      kObstaclePoints,
-      messages::ToObstaclePoints(
-          result, duration_us, node_.runtime().MaxMessageBytes(kObstaclePoints.bus)));
-
+  process::Runtime& runtime = node_.runtime();
+  std::vector<obstacle_points_t> obstacles =
+      messages::ToObstaclePoints(result, duration_us, runtime.MaxMessageBytes(kObstaclePoints.bus));
+  companions_.NoteObstacles(obstacles.size(), runtime.BurstIntervalUs(kObstaclePoints.bus));
+  node_.PublishBurst(kObstaclePoints, std::move(obstacles));
   PublishCompanions(result);
 
   node_.AddProcessingTime(duration_us);
@@ -128,15 +140,14 @@ void PreprocessorProcess::ProcessScan(const core::AssembledScan& scan) {
 void PreprocessorProcess::PublishCompanions(const core::PreprocessedScan& scan) {
   const process::Runtime& runtime = node_.runtime();
   if (scan.local_map) {
-    node_.PublishBurst(kLocalMap,
-                       messages::ToLocalMap(*scan.local_map,
-                                            {.utime = scan.utime, .scan_id = scan.scan_id},
-                                            runtime.MaxMessageBytes(kLocalMap.bus)));
+    companions_.Send(kLocalMap,
+                     messages::ToLocalMap(*scan.local_map,
+                                          {.utime = scan.utime, .scan_id = scan.scan_id},
+                                          runtime.MaxMessageBytes(kLocalMap.bus)));
   }
   if (config_.removed_points) {
-    node_.PublishBurst(
-        kRemovedPoints,
-        messages::ToRemovedPoints(scan, runtime.MaxMessageBytes(kRemovedPoints.bus)));
+    companions_.Send(kRemovedPoints,
+                     messages::ToRemovedPoints(scan, runtime.MaxMessageBytes(kRemovedPoints.bus)));
   }
 }
 
@@ -144,7 +155,7 @@ void PreprocessorProcess::SetCounters() {
   input_.SetCounters();
   if (!map_client_) return;
   map_client_->SetCounters();
-  node_.SetCounter("poses_out_of_order", poses_out_of_order_);
+  node_.SetCounter("poses_out_of_order", pose_trust_.out_of_order());
   if (!last_) return;
   using core::MapVerdict;
   for (const auto& [name, verdict] : {std::pair("points_explained", MapVerdict::kExplained),
@@ -175,6 +186,13 @@ process::State PreprocessorProcess::CurrentState() const {
             true,
             "slices of LIDAR_POINTS are missing from the last scan: " +
                 std::to_string(last_->missing_slices)};
+  }
+  if (companions_.BacklogUs() > kSlowBusUs) {
+    return {status_t::STATE_DEGRADED,
+            true,
+            "OBSTACLE_POINTS are late by " + std::to_string(companions_.BacklogUs() / 1000) +
+                " ms: too many points for the shared bus's max_message_bytes and "
+                "burst_interval_ms"};
   }
   if (last_->deskew == core::DeskewState::kNoOdometry) {
     return {status_t::STATE_DEGRADED,
@@ -209,8 +227,9 @@ std::string PreprocessorProcess::MapTrouble() const {
     case core::MapState::kPoseOld:
       return nothing_removed + "the newest POSE is older than pose.max_extrapolation_ms";
     case core::MapState::kPoseLost:
-      return nothing_removed + (HasTwoPosePublishers() ? "POSE has two publishers"
-                                                       : "POSE_STATUS says that the pose is lost");
+      return nothing_removed + (PoseDoubt() == core::PoseTrust::Doubt::kTwoSources
+                                    ? "POSE has two publishers"
+                                    : "POSE_STATUS says that the pose is lost");
     case core::MapState::kOutsideMap:
       break;
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The map server, its client and the map filter on one bus in virtual time.
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <random>
 #include <string>
@@ -9,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/core/mapping/run_length.hpp"
 #include "common/messages/encoding.hpp"
 #include "common/messages/map_tiles.hpp"
 #include "common/process/log.hpp"
@@ -66,14 +69,46 @@ class SimulatedMapTest : public testing::Test {
     runtime_.SetTap([this](auto, const std::string& channel, std::span<const std::byte> bytes) {
       if (channel == kMap.name) tiles_.push_back(*messages::Decode<map_tile_t>(bytes));
       if (channel == kMapRequest.name) ++requests_;
+      if (channel == kMapServerStatus.name) {
+        const status_t status = *messages::Decode<status_t>(bytes);
+        ++server_statuses_;
+        for (const counter_t& counter : status.counters) {
+          if (counter.name == "map_epoch") announced_ = {status.session, counter.value};
+        }
+      }
+      if (channel == kPreprocessorStatus.name) client_status_ = *messages::Decode<status_t>(bytes);
     });
   }
 
   void RunFor(std::int64_t duration_us) { runtime_.RunUntil(runtime_.MonotonicUs() + duration_us); }
 
+  // As from a server that the test plays.
+  void Announce(const core::MapVersion& version) {
+    status_t status{};
+    status.session = version.session;
+    status.sequence = next_announcement_++;
+    status.n = 1;
+    status.counters.resize(1);
+    status.counters.front().name = "map_epoch";
+    status.counters.front().value = version.epoch;
+    runtime_.Publish(kMapServerStatus.bus, kMapServerStatus.name, messages::Encode(status));
+    RunFor(1000);
+  }
+
+  void Publish(const core::MapTile& tile) {
+    map_tile_t message = messages::ToLcm(tile);
+    message.session = tile.version.session;
+    runtime_.Publish(kMap.bus, kMap.name, messages::Encode(message));
+    RunFor(0);
+  }
+
   process::SimulatedRuntime runtime_{kStart, {.max_message_bytes = 1400}};
   std::vector<map_tile_t> tiles_;
   int requests_ = 0;
+  std::int64_t server_statuses_ = 0;
+  core::MapVersion announced_;  // By the newest status of a server.
+  status_t client_status_{};
+  std::int64_t next_announcement_ = 0;
   process::Node client_node_{runtime_, {"preprocessor", "test", "digest"}, kPreprocessorStatus};
 };
 
@@ -149,7 +184,9 @@ TEST_F(SimulatedMapTest, ADamagedTileIsCountedAndAskedForAgain) {
                      .count = 1,
                      .rectangle = {0, 0, 100, 100},
                      .cells = map.cells};
+  tile.version = announced_;
   map_tile_t damaged = messages::ToLcm(tile);
+  damaged.session = tile.version.session;
   damaged.data.back() = static_cast<std::uint8_t>(damaged.data.back() ^ 1U);
 
   runtime_.Publish(kMap.bus, kMap.name, messages::Encode(damaged));
@@ -157,6 +194,86 @@ TEST_F(SimulatedMapTest, ADamagedTileIsCountedAndAskedForAgain) {
 
   EXPECT_EQ(client.map(), nullptr);
   EXPECT_GT(requests_, 1);
+  client_node_.RefreshAndPublishStatus();
+  RunFor(0);
+  EXPECT_EQ(client_status_.invalid, 1);
+}
+
+// The halves of a map.
+core::MapTile Half(const OccupancyGrid& map, const core::MapVersion& version, int index) {
+  const int rows = map.geometry.height / 2;
+  const core::CellRectangle rectangle{0, index * rows, map.geometry.width, rows};
+  return {.version = version,
+          .geometry = map.geometry,
+          .index = index,
+          .count = 2,
+          .rectangle = rectangle,
+          .cells = core::CellsOf(map, rectangle),
+          .map_checksum = core::Checksum(map.cells)};
+}
+
+TEST_F(SimulatedMapTest, AFirstTileThatContradictsTheOthersDoesNotKeepTheMapAwayForEver) {
+  MapClient client(client_node_, "preprocessor");
+  const OccupancyGrid map = RandomMap(20, 20, 21);
+  const core::MapVersion version{77, 100};
+  Announce(version);
+  Publish({.version = version,
+           .geometry = {5000, 5000, 0.05, 0.0, 0.0, 0.0},
+           .index = 7,
+           .count = 25'000'000,
+           .rectangle = {0, 0, 1, 1},
+           .cells = {0}});
+
+  for (const int index : {0, 1, 0}) Publish(Half(map, version, index));
+
+  ASSERT_NE(client.map(), nullptr) << client.Trouble();
+  EXPECT_EQ(client.map()->grid, map);
+}
+
+TEST_F(SimulatedMapTest, AVersionThatIsAnnouncedAgainAfterANewerOneIsTaken) {
+  MapClient client(client_node_, "preprocessor");
+  const OccupancyGrid map = RandomMap(20, 20, 22);
+  for (const std::int64_t epoch : {100, 200, 100}) {
+    Announce({77, epoch});
+    Publish(Half(map, {77, epoch}, 1));
+    RunFor(kSecond / 2);
+  }
+
+  Publish(Half(map, {77, 100}, 0));
+
+  ASSERT_NE(client.map(), nullptr) << client.Trouble();
+  EXPECT_EQ(client.map()->grid, map);
+}
+
+TEST_F(SimulatedMapTest, EpochsThatAreNoneGiveNoMapAndNoRequests) {
+  MapClient client(client_node_, "preprocessor");
+
+  for (const std::int64_t epoch :
+       {std::numeric_limits<std::int64_t>::min(), std::int64_t{-1}, std::int64_t{0}}) {
+    Announce({77, epoch});
+    RunFor(kSecond);
+    EXPECT_THAT(client.Trouble(), HasSubstr("has no map"));
+  }
+
+  EXPECT_EQ(requests_, 0);
+}
+
+TEST_F(SimulatedMapTest, AMapChecksumBeyondItsWidthIsRefused) {
+  const OccupancyGrid map = RandomMap(20, 20, 23);
+  map_tile_t tile = messages::ToLcm(core::MapTile{.version = {77, 100},
+                                                  .geometry = map.geometry,
+                                                  .index = 0,
+                                                  .count = 1,
+                                                  .rectangle = {0, 0, 20, 20},
+                                                  .cells = map.cells,
+                                                  .map_checksum = core::Checksum(map.cells)});
+  ASSERT_TRUE(messages::FromLcm(tile));
+
+  for (const std::int64_t wrong :
+       {tile.map_checksum + (std::int64_t{1} << 32), tile.map_checksum - (std::int64_t{1} << 32)}) {
+    tile.map_checksum = wrong;
+    EXPECT_FALSE(messages::FromLcm(tile));
+  }
 }
 
 TEST_F(SimulatedMapTest, WhenTheServerFallsSilentItsMapIsNotUsedUntilItIsHeardAgain) {
@@ -234,6 +351,35 @@ TEST_F(SimulatedMapTest, AWindowIsAnsweredWithTheTilesThatItTouches) {
   for (const map_tile_t& tile : tiles_) assembler.Add(messages::FromLcm(tile).value());
   EXPECT_TRUE(assembler.Covers({-2.0, 0.0}, {-1.0, 0.5}));
   EXPECT_FALSE(assembler.IsComplete());
+}
+
+TEST_F(SimulatedMapTest, AFloodOfAbsurdRequestsNeitherMultipliesTilesNorSilencesTheServer) {
+  Server server(runtime_, RandomMap(300, 200, 24));
+  const double inf = std::numeric_limits<double>::infinity();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<map_request_t> requests(5);
+  requests[0].window_min[0] = nan;
+  requests[1].window_min[0] = requests[1].window_min[1] = -inf;
+  requests[1].window_max[0] = requests[1].window_max[1] = inf;
+  requests[2].window_min[0] = requests[2].window_min[1] = 1e300;
+  requests[2].window_max[0] = requests[2].window_max[1] = 2e300;
+  requests[3].epoch = kStart;
+  for (int i = 0; i < 20'000; ++i) {
+    requests[3].missing.push_back(i % 2 == 0 ? 1 : std::numeric_limits<int>::min() + i);
+  }
+  requests[3].n_missing = static_cast<std::int32_t>(requests[3].missing.size());
+  requests[4].epoch = std::numeric_limits<std::int64_t>::max();
+  requests[4].client = "\x1b[2J\n\x80";
+  RunFor(0);
+  const std::int64_t statuses_before = server_statuses_;
+
+  for (int i = 0; i < 2000; ++i) {
+    client_node_.Publish(kMapRequest, requests[static_cast<std::size_t>(i % 5)]);
+    RunFor(1000);
+  }
+
+  EXPECT_EQ(server_statuses_ - statuses_before, 2);
+  EXPECT_LE(std::ssize(tiles_), 2000 * 1000 / 2000 + 1);  // The pace, whatever is asked for.
 }
 
 TEST_F(SimulatedMapTest, RequestsThatCannotBeMetAreCountedAndNothingIsSent) {
