@@ -17,7 +17,7 @@ constexpr std::int64_t kQuietUs = 200'000;
 // Two statuses of different servers within this time are two servers [us].
 constexpr std::int64_t kTwoServersUs = 3'000'000;
 // Tiles named in one request, so that it stays small; the others are asked for next time.
-constexpr std::size_t kMaxNamedTiles = 250;
+constexpr std::size_t kMaxNamedTiles = 200;
 
 std::int64_t CounterOf(const status_t& status, const std::string& name) {
   const auto found = std::find_if(
