@@ -147,7 +147,7 @@ TEST(DetectionsTest, ADetectionKeepsItsGeometry) {
 }
 
 TEST(DetectionsTest, ADetectionComesBackAsItWentOut) {
-  for (const std::size_t vertices : {0, 1, 3, 200}) {
+  for (const std::size_t vertices : {0U, 1U, 3U, 200U}) {
     core::Detection detection = DetectionWithHull(vertices);
     detection.num_points = 1234;
     detection.centroid = {1.0F, -2.0F, 3.0F};
