@@ -40,10 +40,10 @@ install_packages() {
 }
 
 # build_preset PRESET [TARGET...]: configures where needed and builds.
-build_preset() {
-  local preset=$1
+build_preset() (
+  preset=$1
   shift
-  cd "$root"
+  cd "$root" # Of this subshell only: relative paths of the caller stay its own.
   [ -f "build/$preset/build.ninja" ] || cmake --preset "$preset" >&2
   cmake --build "build/$preset" --parallel "$(nproc)" --target "${@:-all}" >&2
-}
+)

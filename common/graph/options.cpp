@@ -37,6 +37,12 @@ void AddOptions(CLI::App& app, Options& options) {
       "--print-config", options.print_config, "Print the effective configuration and stop");
 }
 
+void ServeMap(const std::filesystem::path& map, Options& options) {
+  const std::string file = std::filesystem::absolute(map).string();
+  options.overrides.insert(options.overrides.begin(),
+                           {"map_server.file=" + file, "preprocessor.map_filter.enabled=true"});
+}
+
 config::LoadResult<GraphConfig> LoadConfig(const Options& options) {
   std::vector<std::string> overrides = options.overrides;
   if (!options.lcm_url.empty()) {

@@ -34,6 +34,9 @@ struct Options {
 /// Adds the common options to `app`, which the caller then parses with GuardedMain().
 void AddOptions(CLI::App& app, Options& options);
 
+/// What --map FILE means: serve this map and filter with it, unless --set says otherwise.
+void ServeMap(const std::filesystem::path& map, Options& options);
+
 /// The configuration that the options name, with --set and --lcm-url applied. Throws
 /// config::ConfigError with all problems.
 [[nodiscard]] config::LoadResult<GraphConfig> LoadConfig(const Options& options);

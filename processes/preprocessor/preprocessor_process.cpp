@@ -91,9 +91,14 @@ void PreprocessorProcess::OnOdometry(const odometry_t& message) {
 }
 
 void PreprocessorProcess::OnPose(const pose_t& message) {
-  const core::PoseBuffer::Outcome outcome =
-      pose_.Add(message.utime, messages::T_map_vehicle(message));
+  const Eigen::Isometry3d T_map_vehicle = messages::T_map_vehicle(message);
+  core::PoseBuffer::Outcome outcome = pose_.Add(message.utime, T_map_vehicle);
   if (outcome == core::PoseBuffer::Outcome::kInvalid) node_.CountInvalid();
+  // One stamp with two poses has two sources.
+  if (outcome == core::PoseBuffer::Outcome::kDuplicate &&
+      pose_.Lookup(message.utime)->matrix() != T_map_vehicle.matrix()) {
+    outcome = core::PoseBuffer::Outcome::kOutOfOrder;
+  }
   pose_trust_.OnPose(message.utime, outcome, node_.runtime().MonotonicUs());
 }
 

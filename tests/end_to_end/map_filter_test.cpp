@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From a recording to a map, and back to the recording filtered with it: a real room, and the lab
 // in a running graph.
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -118,6 +119,50 @@ TEST_F(MapFilterTest, TheRunnerServesAMapThatWasBuiltFromItsOwnLog) {
   const nlohmann::json figures = Figures("run.json");
   EXPECT_EQ(figures.at("messages_lost"), 0);
   EXPECT_LT(figures.at("points").at("map"), 0.5 * figures.at("points").at("floor").get<double>());
+}
+
+TEST_F(MapFilterTest, NoToolWritesOverWhatItReads) {
+  Run({Program("play"),
+       "--config",
+       ShippedConfig("lab.xml"),
+       "--input",
+       ShippedConfig("lab_scene.xml"),
+       "--scene-seconds",
+       "1",
+       "--to-log",
+       Path("lab.log")});
+  const auto size = std::filesystem::file_size(Path("lab.log"));
+  std::filesystem::copy(ShippedConfig("lab_scene.xml"), Path("scene.xml"));
+  std::filesystem::create_symlink(Path("lab.log"), Path("lab.yaml"));
+  const std::vector<std::vector<std::string>> commands = {
+      {Program("run"),
+       "--headless",
+       "--config",
+       ShippedConfig("lab.xml"),
+       "--input",
+       Path("lab.log"),
+       "--log",
+       Path("lab.log"),
+       "--output",
+       Path("output")},
+      {Program("map"), "build", Path("lab.log"), "--output", Path("lab.yaml")},
+      {Program("play"),
+       "--config",
+       ShippedConfig("lab.xml"),
+       "--input",
+       Path("scene.xml"),
+       "--to-log",
+       Path("scene.xml")},
+  };
+
+  for (const std::vector<std::string>& command : commands) {
+    const ProgramResult result = RunProgram(command, folder_.path());
+    EXPECT_EQ(result.exit_status, 70) << command.front();
+    EXPECT_THAT(result.err, testing::HasSubstr("is read by this command"));
+  }
+  EXPECT_EQ(std::filesystem::file_size(Path("lab.log")), size);
+  EXPECT_EQ(std::filesystem::file_size(Path("scene.xml")),
+            std::filesystem::file_size(ShippedConfig("lab_scene.xml")));
 }
 
 }  // namespace

@@ -146,7 +146,7 @@ TEST_F(PlotProgramTest, SaysWhatIsWrong) {
       {{"--output", Path("x.png"), "--scan", "99"}, 70, "5 scans from 0 to 4"},
       {{"--output", Path("x.png"), "--time", "1000"}, 70, "no scan at 1000.00 s"},
       {{"--output", Path("x.png"), "--channel-prefix", "Q_"}, 70, "channels in it:"},
-      {{"--output", log}, 70, "is the log that is read"},
+      {{"--output", log}, 70, "is read by this command"},
       {{"--output", Path("none") + "/x.png"}, 70, "cannot write the picture"},
       {{"--output", Path("x.png"), "--set", "recording.rate_hz=-1"}, 78, "rate_hz"},
       {{"--output", Path("x.png"), "--layers", "dreams"}, 64, "dreams"},

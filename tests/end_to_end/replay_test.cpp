@@ -126,7 +126,7 @@ TEST_F(ReplayProgramTest, NeverWritesOverWhatItReads) {
   const ProgramResult result = Replay(log, {"--output", log});
 
   EXPECT_EQ(result.exit_status, 70);
-  EXPECT_THAT(result.err, testing::HasSubstr("is read by this replay"));
+  EXPECT_THAT(result.err, testing::HasSubstr("is read by this command"));
   EXPECT_TRUE(ContentOf(log) == before);
 }
 

@@ -61,6 +61,22 @@ TEST_F(SimulatedMapFilterTest, ALogThatIsPlayedOnceMoreIsNoSecondPublisherOfPose
   EXPECT_EQ(scan_.map_state, obstacle_points_t::MAP_FILTERED) << status_.text;
 }
 
+TEST_F(SimulatedMapFilterTest, TwoPosesForOneStampHaveTwoPublishers) {
+  ServeMap(runtime_);
+  FixPose(0.0, 0.0, 0.0);
+  player_.Subscribe<pose_t>(kPose, [this](const pose_t& pose) {
+    if (pose.pos[0] == 0.0) {
+      player_.Publish(
+          kPose, messages::ToPose(pose.utime, core::FromRpy({1.0, 0.0, 0.0}, {0.0, 0.0, 0.0})));
+    }
+  });
+
+  PlayScan();
+
+  EXPECT_EQ(scan_.map_state, obstacle_points_t::POSE_LOST);
+  EXPECT_THAT(status_.text, HasSubstr("two publishers"));
+}
+
 TEST_F(SimulatedMapFilterTest, LostHoldsUntilItIsTakenBack) {
   ServeMap(runtime_);
   PublishPoseStatus(pose_status_t::STATE_LOST, 1);

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/graph/options.hpp"
+#include "common/graph/output_files.hpp"
 #include "tools/evaluate/evaluation.hpp"
 #include "tools/evaluate/report.hpp"
 
@@ -85,6 +86,9 @@ int Main(int argc, char** argv) {
     if (graph::AnsweredByConfig(arguments.common, config)) return graph::kExitOk;
     const Evaluation evaluation = Evaluate(arguments.input, config.root, arguments.rules);
     std::fputs(FormatTable(evaluation).c_str(), stdout);
+    graph::RefuseToOverwrite(
+        {arguments.json},
+        {arguments.input.log, arguments.input.labels, arguments.common.config_path});
     if (!arguments.json.empty()) WriteFile(arguments.json, FormatJson(evaluation));
     return graph::kExitOk;
   });

@@ -6,6 +6,7 @@
 
 #include "common/graph/finite_check.hpp"
 #include "common/graph/options.hpp"
+#include "common/graph/output_files.hpp"
 #include "common/io/map/map_writer.hpp"
 #include "tools/map/build.hpp"
 #include "tools/map/subcommand.hpp"
@@ -14,6 +15,7 @@ namespace clearway::map_tool {
 namespace {
 
 int RunBuild(const BuildSettings& settings) {
+  graph::RefuseToOverwrite({settings.output}, {settings.log});
   const BuildReport report = BuildMap(settings);
   std::fputs(Describe(report).c_str(), stdout);
   io::SaveMap(report.map, settings.output);
@@ -32,6 +34,7 @@ Subcommand AddBuild(CLI::App& program) {
       ->add_option(
           "--output", settings->output, "Write the map to this YAML file, and its image beside it")
       ->required()
+      ->check(HasEnding({".yaml", ".yml"}))
       ->type_name("MAP.yaml");
   build
       ->add_option("--min-share",

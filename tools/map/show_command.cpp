@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/graph/options.hpp"
+#include "common/graph/output_files.hpp"
 #include "common/process/log.hpp"
 #include "tools/map/show.hpp"
 #include "tools/map/subcommand.hpp"
@@ -36,6 +37,7 @@ void WriteFile(const std::filesystem::path& path, const std::string& text) {
 }
 
 int RunShow(const ShowArguments& arguments) {
+  graph::RefuseToOverwrite({arguments.output, arguments.json}, {arguments.map});
   const io::LoadedMap map = io::LoadMap(arguments.map);
   for (const std::string& key : map.description.ignored_keys) {
     process::LogWarning(arguments.map.string() + ": key " + io::Quoted(key) + " is ignored");
@@ -56,6 +58,7 @@ Subcommand AddShow(CLI::App& program) {
       ->type_name("MAP.yaml");
   show->add_option("--output", arguments->output, "Write the picture to this PNG file")
       ->required()
+      ->check(HasEnding({".png"}))
       ->type_name("FILE");
   show->add_option("--json", arguments->json, "Write the figures to this file")->type_name("FILE");
   return {show, [arguments] { return RunShow(*arguments); }};

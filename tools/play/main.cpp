@@ -7,6 +7,7 @@
 
 #include "common/graph/finite_check.hpp"
 #include "common/graph/options.hpp"
+#include "common/graph/output_files.hpp"
 #include "common/io/lcm_log.hpp"
 #include "common/io/read_error.hpp"
 #include "common/process/live_runtime.hpp"
@@ -83,6 +84,7 @@ int PlayLive(const Arguments& arguments, const graph::GraphConfig& config, ScanS
 }
 
 int WriteLog(const Arguments& arguments, const graph::GraphConfig& config, ScanSource& source) {
+  graph::RefuseToOverwrite({arguments.to_log}, {arguments.input, arguments.common.config_path});
   io::LcmLogWriter log(arguments.to_log);
   process::SimulatedRuntime runtime(
       source.utime(0),

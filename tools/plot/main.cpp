@@ -10,6 +10,7 @@
 
 #include "common/graph/finite_check.hpp"
 #include "common/graph/options.hpp"
+#include "common/graph/output_files.hpp"
 #include "tools/evaluate/evaluation.hpp"
 #include "tools/plot/scan_from_messages.hpp"
 #include "tools/plot/scan_log.hpp"
@@ -142,10 +143,7 @@ class OutputFiles {
   explicit OutputFiles(const Arguments& arguments)
       : file_(arguments.output), folder_(arguments.output_folder) {
     if (!folder_.empty()) fs::create_directories(folder_);
-    std::error_code ignored;
-    if (!file_.empty() && fs::equivalent(file_, arguments.log, ignored)) {
-      throw std::runtime_error("--output " + file_.string() + " is the log that is read");
-    }
+    graph::RefuseToOverwrite({file_}, {arguments.log, arguments.common.config_path});
   }
 
   [[nodiscard]] fs::path Next(std::int64_t scan_id) {

@@ -7,12 +7,13 @@
 #include <cstdio>
 
 #include "common/core/geometry/plane.hpp"
+#include "common/core/guard/free_speed.hpp"
+#include "common/messages/map_state.hpp"
 
 namespace clearway::plot {
 namespace {
 
 // Drawn length of the corridor while nothing stands in it.
-constexpr double kFreeCorridor_m = 4.0;
 constexpr std::size_t kMaxLabels = 10;
 
 std::string Format(const char* format, double value) {
@@ -61,7 +62,7 @@ void AddFloorFromRaw(const ScanMessages& scan, double threshold_m, ScanPicture& 
 bool MayHaveUsedMap(const ScanMessages& scan) {
   if (scan.obstacles.empty()) return true;
   const std::int8_t state = scan.obstacles.front().map_state;
-  return state == obstacle_points_t::MAP_FILTERED || state == obstacle_points_t::OUTSIDE_MAP;
+  return messages::IsFiltered(state);
 }
 
 void AddRemoved(const ScanMessages& scan, double floor_threshold_m, ScanPicture& picture) {
@@ -144,9 +145,13 @@ void AddCorridor(const drive_permit_t& permit,
     left = std::max(left, corner.y());
     right = std::min(right, corner.y());
   }
-  const auto length_m = static_cast<float>(permit.free_distance_m < 0.0
-                                               ? kFreeCorridor_m
-                                               : std::min(permit.free_distance_m, kFreeCorridor_m));
+  // To what is in the way; where nothing is within the guard's reach, what the permit vouches for:
+  // the way to a stand.
+  const core::Braking braking{vehicle.deceleration_mps2, vehicle.ReactionTime(), 0.0};
+  const auto length_m =
+      static_cast<float>(permit.free_distance_m < 0.0
+                             ? core::StoppingDistance(std::max(permit.forward_mps, 0.0), braking)
+                             : permit.free_distance_m);
   PictureCorridor corridor;
   corridor.polygon = {
       {front, right}, {front + length_m, right}, {front + length_m, left}, {front, left}};

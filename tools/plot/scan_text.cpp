@@ -10,6 +10,7 @@
 #include <set>
 
 #include "common/messages/channels.hpp"
+#include "common/messages/map_state.hpp"
 #include "tools/plot/scan_from_messages.hpp"
 
 namespace clearway::plot {
@@ -148,27 +149,6 @@ std::string FloorLine(const ScanMessages& scan, const ScanContext& context) {
   return line;
 }
 
-const char* MapStateText(std::int8_t state) {
-  switch (state) {
-    case obstacle_points_t::MAP_OFF:
-      return "the map filter is off";
-    case obstacle_points_t::MAP_FILTERED:
-      return "filtered with it";
-    case obstacle_points_t::MAP_MISSING:
-      return "no map: nothing was removed";
-    case obstacle_points_t::POSE_MISSING:
-      return "no pose: nothing was removed";
-    case obstacle_points_t::POSE_OLD:
-      return "pose too old: nothing was removed";
-    case obstacle_points_t::POSE_LOST:
-      return "localization lost: nothing was removed";
-    case obstacle_points_t::OUTSIDE_MAP:
-      return "filtered, but most points are off the map or in unknown cells";
-    default:
-      return "state not known";
-  }
-}
-
 std::string MapLine(const ScanMessages& scan, const ScanContext& context) {
   const CollectedMap& map = context.map;
   if (!map.grid && scan.obstacles.empty()) return {};
@@ -186,7 +166,7 @@ std::string MapLine(const ScanMessages& scan, const ScanContext& context) {
   }
   if (scan.obstacles.empty()) return line;
   const obstacle_points_t& header = scan.obstacles.front();
-  line += std::string("; ") + MapStateText(header.map_state);
+  line += std::string("; ") + messages::MapStateInWords(header.map_state);
   if (header.map_epoch != 0 && header.map_epoch != map.epoch) {
     line += " (FILTERED WITH EPOCH " + std::to_string(header.map_epoch) + ")";
   }

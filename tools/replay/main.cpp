@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/graph/options.hpp"
+#include "common/graph/output_files.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/replay/report.hpp"
 
@@ -73,22 +74,6 @@ class ProgressLine {
   bool is_shown_ = false;
 };
 
-bool IsSameFile(const fs::path& a, const fs::path& b) {
-  std::error_code ignored;
-  return fs::equivalent(a, b, ignored);
-}
-
-// The output replaces a file: never one that is read.
-void RefuseToOverwrite(const Arguments& arguments) {
-  for (const fs::path& written : {arguments.output, arguments.json}) {
-    for (const fs::path& read : {arguments.log, arguments.compare}) {
-      if (IsSameFile(written, read)) {
-        throw std::runtime_error(written.string() + ": is read by this replay; give another file");
-      }
-    }
-  }
-}
-
 void WriteFile(const fs::path& path, const std::string& text) {
   std::ofstream file(path);
   file << text;
@@ -97,7 +82,9 @@ void WriteFile(const fs::path& path, const std::string& text) {
 }
 
 int ReplayAndReport(const Arguments& arguments, const graph::GraphConfig& config) {
-  RefuseToOverwrite(arguments);
+  graph::RefuseToOverwrite(
+      {arguments.output, arguments.json},
+      {arguments.log, arguments.compare, arguments.map, arguments.common.config_path});
   ReplaySettings settings{.log = arguments.log,
                           .output = arguments.output,
                           .with_inputs = arguments.with_inputs,
@@ -130,9 +117,7 @@ int Main(int argc, char** argv) {
   AddArguments(app, arguments);
   return graph::GuardedMain(app, arguments.common, argc, argv, [&] {
     if (!arguments.map.empty()) {
-      arguments.common.overrides.push_back("map_server.file=" +
-                                           fs::absolute(arguments.map).string());
-      arguments.common.overrides.emplace_back("preprocessor.map_filter.enabled=true");
+      graph::ServeMap(arguments.map, arguments.common);
     }
     const auto config = graph::LoadConfig(arguments.common);
     if (graph::AnsweredByConfig(arguments.common, config)) return graph::kExitOk;

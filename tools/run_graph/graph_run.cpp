@@ -2,6 +2,7 @@
 #include "tools/run_graph/graph_run.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <cstdio>
 #include <stdexcept>
@@ -20,8 +21,18 @@ constexpr std::int64_t kDrainTimeoutUs = 3'000'000;
 constexpr std::int64_t kLiveSilenceUs = 3'000'000;
 constexpr int kStopTimeoutMs = 3000;
 constexpr std::int64_t kLastWordsUs = 100'000;  // For the last status of each process.
-constexpr char kLogInputs[] = "(LIDAR_POINTS|ODOMETRY|POSE|POSE_STATUS)";
-constexpr char kLogInputsWithoutPose[] = "(LIDAR_POINTS|ODOMETRY)";
+
+// The channels of a log that may be played into the graph, as a regular expression of
+// lcm-logplayer, which anchors it at both ends. POSE has one publisher.
+std::string InputsOf(const RunSettings& settings) {
+  std::string prefix;
+  for (const char c : settings.channel_prefix) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_') prefix += '\\';
+    prefix += c;
+  }
+  return prefix + (settings.with_pose_source ? "(LIDAR_POINTS|ODOMETRY)"
+                                             : "(LIDAR_POINTS|ODOMETRY|POSE|POSE_STATUS)");
+}
 
 std::string ProgramOf(std::string process) {
   std::replace(process.begin(), process.end(), '_', '-');
@@ -40,9 +51,13 @@ void GraphRun::Run() {
   StartProcesses();
   phase_start_us_ = runtime_.MonotonicUs();
   runtime_.Every(kSuperviseUs, [this] { Supervise(); });
-  if (settings_.show_progress) runtime_.Every(kProgressUs, [this] { ShowProgress(); });
+  process::Runtime::TimerId progress = 0;
+  if (settings_.show_progress) {
+    progress = runtime_.Every(kProgressUs, [this] { ShowProgress(); });
+  }
   runtime_.Run();
   if (settings_.show_progress) {
+    runtime_.Cancel(progress);
     ShowProgress();
     std::fputc('\n', stderr);
   }
@@ -124,12 +139,8 @@ void GraphRun::StartFeeding() {
     command.insert(
         command.end(), settings_.child_arguments.begin(), settings_.child_arguments.end());
   } else if (settings_.kind == InputKind::kLog) {
-    command = {"lcm-logplayer",
-               "-l",
-               settings_.lcm_url,
-               "-e",
-               settings_.with_pose_source ? kLogInputsWithoutPose : kLogInputs,
-               settings_.input};
+    command = {
+        "lcm-logplayer", "-l", settings_.lcm_url, "-e", InputsOf(settings_), settings_.input};
   } else {
     return;
   }
@@ -152,7 +163,6 @@ std::string GraphRun::WhoIsNotReady() const {
   for (const std::string& process : ProcessNames()) {
     const status_t* const status = statistics_.StatusOf(process);
     if (status == nullptr) return process + " (nothing heard from it)";
-    RefuseForeign(*status);
     if (status->ready == 0) return process + " (" + status->text + ")";
   }
   if (settings_.wait_for_map && !HasMap()) return "the map on its way to the preprocessor";
@@ -193,6 +203,9 @@ bool GraphRun::IsInputOver() {
 void GraphRun::Supervise() {
   if (phase_ == Phase::kDone) return;
   CheckForDeaths();
+  for (const std::string& process : ProcessNames()) {
+    if (const status_t* const status = statistics_.StatusOf(process)) RefuseForeign(*status);
+  }
   const std::int64_t now_us = runtime_.MonotonicUs();
   const std::int64_t phase_us = now_us - phase_start_us_;
   switch (phase_) {

@@ -8,6 +8,7 @@
 
 #include "common/graph/finite_check.hpp"
 #include "common/graph/options.hpp"
+#include "common/graph/output_files.hpp"
 #include "common/process/log.hpp"
 #include "tools/run_graph/graph_run.hpp"
 #include "tools/run_graph/picture.hpp"
@@ -92,8 +93,7 @@ void FillIn(Arguments& arguments) {
     throw std::runtime_error("--input " + arguments.input + ": no such file or folder");
   }
   if (!arguments.map.empty()) {
-    arguments.common.overrides.push_back("map_server.file=" + fs::absolute(arguments.map).string());
-    arguments.common.overrides.emplace_back("preprocessor.map_filter.enabled=true");
+    graph::ServeMap(arguments.map, arguments.common);
   }
 }
 
@@ -127,6 +127,15 @@ RunSettings SettingsOf(const Arguments& arguments, const graph::GraphConfig& con
   return settings;
 }
 
+// Those of an earlier run.
+void RemoveResults(const fs::path& folder) {
+  fs::remove(folder / kPicture);
+  for (const char* process :
+       {"preprocessor", "clusterer", "stop_guard", "map_server", "pose_source", "play"}) {
+    fs::remove(folder / (std::string(process) + ".log"));
+  }
+}
+
 void Report(const Arguments& arguments, const graph::GraphConfig& config, const GraphRun& run) {
   const RunSummary summary = run.statistics().Summarise();
   std::fputs(FormatTable(summary, run.machine_use()).c_str(), stdout);
@@ -143,8 +152,10 @@ void Report(const Arguments& arguments, const graph::GraphConfig& config, const 
 }
 
 int RunAndReport(const Arguments& arguments, const graph::GraphConfig& config) {
+  graph::RefuseToOverwrite({arguments.log, arguments.json},
+                           {arguments.input, arguments.map, arguments.common.config_path});
   fs::create_directories(arguments.output);
-  fs::remove(arguments.output / kPicture);  // Of an earlier run.
+  RemoveResults(arguments.output);
   process::LiveRuntime runtime(config.buses, arguments.common.channel_prefix);
   process::Node node(
       runtime, {"run", CLEARWAY_VERSION, config::Digest(config)}, messages::channels::kRunStatus);

@@ -52,6 +52,13 @@ std::string FormatTable(const RunSummary& summary, const std::optional<MachineUs
   AddFigure(text, "after the floor", summary.points_floor);
   AddFigure(text, "after the map", summary.points_map);
   AddFigure(text, "detections", summary.detections);
+  if (summary.map_scans > 0) {
+    text += Line("\n%-24s %8zu of %zu scans\n",
+                 "filtered with the map",
+                 summary.map_filtered,
+                 summary.map_scans);
+    if (!summary.map_trouble.empty()) text += "  (" + summary.map_trouble + ")\n";
+  }
   if (use) {
     text += Line("\n%-24s %8.2f\n", "CPU cores", use->cpu_cores);
     text += Line("%-24s %8.1f\n", "memory (PSS) MB", use->pss_mb);
@@ -78,6 +85,10 @@ std::string FormatJson(const RunSummary& summary, const std::optional<MachineUse
   if (summary.points_floor) json["points"]["floor"] = *summary.points_floor;
   if (summary.points_map) json["points"]["map"] = *summary.points_map;
   if (summary.detections) json["detections"] = *summary.detections;
+  if (summary.map_scans > 0) {
+    json["map_filter"]["scans"] = summary.map_scans;
+    json["map_filter"]["filtered"] = summary.map_filtered;
+  }
   if (summary.scan_to_detections_ms) {
     json["latency_ms"]["scan_to_detections"] = ToJson(*summary.scan_to_detections_ms);
   }

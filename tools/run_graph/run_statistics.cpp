@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/messages/map_state.hpp"
 #include "common/messages/pose.hpp"
 
 namespace clearway::run_graph {
@@ -81,9 +82,14 @@ void RunStatistics::OnObstaclePoints(const obstacle_points_t& message) {
   sum_in_ += message.points_in;
   sum_voxel_ += message.points_voxel;
   sum_floor_ += message.points_floor;
-  if (message.map_state == obstacle_points_t::MAP_FILTERED) {
+  if (message.map_state != obstacle_points_t::MAP_OFF) ++map_scans_;
+  if (messages::IsFiltered(message.map_state)) {
     ++mapped_scans_;
     sum_map_ += message.points_map;
+  }
+  if (message.map_state != obstacle_points_t::MAP_OFF &&
+      message.map_state != obstacle_points_t::MAP_FILTERED) {
+    map_trouble_ = messages::MapStateInWords(message.map_state);
   }
 }
 
@@ -178,6 +184,9 @@ RunSummary RunStatistics::Summarise() const {
   summary.points_voxel = Mean(sum_voxel_, obstacle_scans_);
   summary.points_floor = Mean(sum_floor_, obstacle_scans_);
   summary.points_map = Mean(sum_map_, mapped_scans_);
+  summary.map_scans = map_scans_;
+  summary.map_filtered = mapped_scans_;
+  summary.map_trouble = map_trouble_;
   summary.detections = Mean(sum_detections_, detected_.size());
   summary.scan_to_detections_ms = QuantilesOf(scan_to_detections_ms_);
   summary.slice_to_permit_ms = QuantilesOf(slice_to_permit_ms_);

@@ -54,7 +54,10 @@ struct RunSummary {
   std::optional<double> points_in;  ///< Means per scan.
   std::optional<double> points_voxel;
   std::optional<double> points_floor;
-  std::optional<double> points_map;  ///< Only with a map filter.
+  std::optional<double> points_map;  ///< Only of scans that were filtered.
+  std::size_t map_scans = 0;         ///< Scans for which the map filter was on...
+  std::size_t map_filtered = 0;      ///< ...and something could be filtered.
+  std::string map_trouble;           ///< The newest reason why not; empty: none.
   std::optional<double> detections;
   std::optional<Quantiles> scan_to_detections_ms;
   std::optional<Quantiles> slice_to_permit_ms;
@@ -134,7 +137,9 @@ class RunStatistics {
   std::vector<double> scan_to_detections_ms_;
   std::vector<double> slice_to_permit_ms_;
   std::size_t obstacle_scans_ = 0;
+  std::size_t map_scans_ = 0;
   std::size_t mapped_scans_ = 0;
+  std::string map_trouble_;
   std::size_t incomplete_ = 0;
   double sum_in_ = 0.0;
   double sum_voxel_ = 0.0;

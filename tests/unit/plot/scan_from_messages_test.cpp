@@ -168,7 +168,7 @@ TEST(MakePicture, DrawsTheMapOnlyWithAPose) {
   ASSERT_TRUE(with.map.has_value());
   EXPECT_EQ(with.map->T_map_vehicle.translation().y(), 2.0);
   EXPECT_THAT(with.text_lines,
-              Contains("map: epoch 3, 2 x 2 cells of 0.05 m (1 of 2 tiles); filtered with it "
+              Contains("map: epoch 3, 2 x 2 cells of 0.05 m (1 of 2 tiles); filtered "
                        "(FILTERED WITH EPOCH 2)"));
   EXPECT_THAT(with.text_lines, Contains("pose: x 1.00 m, y 2.00 m, yaw 0.0 deg in map"));
 }
