@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace clearway::graph {
@@ -11,5 +12,8 @@ namespace clearway::graph {
 /// for nothing.
 void RefuseToOverwrite(const std::vector<std::filesystem::path>& written,
                        const std::vector<std::filesystem::path>& read);
+
+/// Replaces the file by `text`. Throws std::runtime_error with the file and the system's reason.
+void WriteFile(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace clearway::graph

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
-#include <fstream>
 #include <numbers>
 #include <optional>
-#include <stdexcept>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -68,13 +66,6 @@ std::optional<Eigen::Isometry3d> ReferencePose(const std::vector<double>& x_y_ya
   return core::FromRpy({x_y_yaw_deg[0], x_y_yaw_deg[1], 0.0}, {0.0, 0.0, yaw_rad});
 }
 
-void WriteFile(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file) throw std::runtime_error(path.string() + ": cannot write");
-}
-
 int Main(int argc, char** argv) {
   CLI::App app("Scores the detections of an LCM log against labelled boxes", "clearway-evaluate");
   Arguments arguments;
@@ -89,7 +80,7 @@ int Main(int argc, char** argv) {
     graph::RefuseToOverwrite(
         {arguments.json},
         {arguments.input.log, arguments.input.labels, arguments.common.config_path});
-    if (!arguments.json.empty()) WriteFile(arguments.json, FormatJson(evaluation));
+    if (!arguments.json.empty()) graph::WriteFile(arguments.json, FormatJson(evaluation));
     return graph::kExitOk;
   });
 }

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cerrno>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <stdexcept>
 #include <string>
-#include <system_error>
 
 #include <CLI/CLI.hpp>
 
@@ -25,17 +21,6 @@ struct ShowArguments {
   std::filesystem::path json;
 };
 
-void WriteFile(const std::filesystem::path& path, const std::string& text) {
-  errno = 0;
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) {
-    throw std::runtime_error(path.string() +
-                             ": cannot write: " + std::generic_category().message(errno));
-  }
-}
-
 int RunShow(const ShowArguments& arguments) {
   graph::RefuseToOverwrite({arguments.output, arguments.json}, {arguments.map});
   const io::LoadedMap map = io::LoadMap(arguments.map);
@@ -44,7 +29,7 @@ int RunShow(const ShowArguments& arguments) {
   }
   std::fputs(FormatLine(map).c_str(), stdout);
   DrawMap(map, arguments.map, arguments.output);
-  if (!arguments.json.empty()) WriteFile(arguments.json, FormatJson(map));
+  if (!arguments.json.empty()) graph::WriteFile(arguments.json, FormatJson(map));
   return graph::kExitOk;
 }
 

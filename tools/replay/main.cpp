@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <chrono>
 #include <cstdio>
-#include <fstream>
 #include <stdexcept>
 #include <unistd.h>
 
@@ -74,13 +73,6 @@ class ProgressLine {
   bool is_shown_ = false;
 };
 
-void WriteFile(const fs::path& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file) throw std::runtime_error(path.string() + ": cannot write");
-}
-
 int ReplayAndReport(const Arguments& arguments, const graph::GraphConfig& config) {
   graph::RefuseToOverwrite(
       {arguments.output, arguments.json},
@@ -103,7 +95,7 @@ int ReplayAndReport(const Arguments& arguments, const graph::GraphConfig& config
         Compare(result.detections, ReadDetections(arguments.compare, settings.channel_prefix));
   }
   std::fputs(FormatTable(report).c_str(), stdout);
-  if (!arguments.json.empty()) WriteFile(arguments.json, FormatJson(report));
+  if (!arguments.json.empty()) graph::WriteFile(arguments.json, FormatJson(report));
   const std::string problems = Problems(report);
   std::fputs(problems.c_str(), stderr);
   return problems.empty() ? graph::kExitOk : graph::kExitFailure;

@@ -144,11 +144,9 @@ void Report(const Arguments& arguments, const graph::GraphConfig& config, const 
     plot::WritePng(MakePicture(run.statistics(), config), picture);
     std::printf("\npicture of the last scan: %s\n", picture.c_str());
   }
-  if (arguments.json.empty()) return;
-  std::ofstream file(arguments.json);
-  file << FormatJson(summary, run.machine_use());
-  file.close();
-  if (!file) throw std::runtime_error(arguments.json.string() + ": cannot write");
+  if (!arguments.json.empty()) {
+    graph::WriteFile(arguments.json, FormatJson(summary, run.machine_use()));
+  }
 }
 
 int RunAndReport(const Arguments& arguments, const graph::GraphConfig& config) {
