@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace clearway::core::procman {
+
+/// A command line, taken apart. No shell is involved: no globs, pipes, `;` or `~`.
+struct ExecLine {
+  /// Settings for the child's environment, in order: leading words with '=' in them.
+  std::vector<std::pair<std::string, std::string>> environment;
+  /// Program and arguments, variables expanded.
+  std::vector<std::string> arguments;
+};
+
+/// Either a line or what is wrong with the text.
+struct ParsedExecLine {
+  std::optional<ExecLine> line;
+  std::string problem;  ///< One sentence; empty when there is a line.
+};
+
+/// Longer texts are refused [bytes].
+inline constexpr std::size_t kMaxExecBytes = 16384;
+
+/// The value of a variable of the deputy's environment; nothing when it is not set.
+using LookupVariable = std::function<std::optional<std::string>(const std::string& name)>;
+
+/// Grammar of the reference procman: white space separates words; '..' and ".." join them, also in
+/// the middle of a word; a backslash takes the next character literally, also inside both quotes.
+/// Leading words with '=' set the child's environment and are not expanded. In all others $NAME and
+/// ${NAME} become the variable's value, also within quotes; a name that is not set, and a dollar
+/// that was taken literally (`\$`), stay as they are written. A value is never split into words.
+/// Refused: an open quote, a backslash at the end, a NUL, no program, too long a text.
+/// O(n) time.
+[[nodiscard]] ParsedExecLine ParseExecLine(std::string_view text, const LookupVariable& lookup);
+
+}  // namespace clearway::core::procman
