@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <clearway/deputy_health_t.hpp>
 #include <clearway/detections_t.hpp>
 #include <clearway/drive_command_t.hpp>
 #include <clearway/drive_permit_t.hpp>
@@ -61,5 +62,6 @@ inline constexpr Channel<procman_lcm::deputy_info_t> kPmInfo{"PM_INFO", BusId::k
 inline constexpr Channel<procman_lcm::orders_t> kPmOrders{"PM_ORDERS", BusId::kShared};
 inline constexpr Channel<procman_lcm::output_t> kPmOutput{"PM_OUTPUT", BusId::kShared};
 inline constexpr Channel<procman_lcm::discovery_t> kPmDiscover{"PM_DISCOVER", BusId::kShared};
+inline constexpr Channel<deputy_health_t> kPmHealth{"PM_HEALTH", BusId::kShared};
 
 }  // namespace clearway::messages::channels

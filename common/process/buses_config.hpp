@@ -65,6 +65,15 @@ struct BusesConfig {
   [[nodiscard]] std::vector<std::string> Validate() const;
 };
 
+/// A bus from an address as LCM's own programs take it: udpm://[GROUP[:PORT]][?ttl=N]
+/// [&recv_buf_size=N], with LCM's defaults for what is left out; all else as in `defaults`. Throws
+/// std::invalid_argument that names the address and what is wrong with it.
+[[nodiscard]] BusConfig BusFromUrl(const std::string& url, BusConfig defaults = {});
+
+/// Largest message for a bus that leaves its host and whose size nobody configured [bytes]: one
+/// frame of Ethernet, since one lost frame loses the message.
+inline constexpr int kMessageBytesBetweenHosts = 1400;
+
 /// The port of udpm://GROUP:PORT; -1 when the address is not of this form.
 [[nodiscard]] int PortOf(const std::string& url);
 

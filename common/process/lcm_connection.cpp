@@ -2,6 +2,8 @@
 #include "common/process/lcm_connection.hpp"
 
 #include <algorithm>
+#include <arpa/inet.h>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -10,10 +12,13 @@
 #include <netinet/in.h>
 #include <stdexcept>
 #include <sys/socket.h>
+#include <unistd.h>
 #include <utility>
 
 #include <dirent.h>
 #include <lcm/lcm.h>
+
+#include "common/process/live_runtime.hpp"
 
 namespace clearway::process {
 namespace {
@@ -39,6 +44,15 @@ std::string FullUrl(const BusConfig& config) {
          "&recv_buf_size=" + std::to_string(GrantableBufferBytes(config.receive_buffer_bytes));
 }
 
+sockaddr_in GroupOf(const std::string& url) {
+  const std::size_t begin = std::strlen("udpm://");
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(PortOf(url)));
+  inet_pton(AF_INET, url.substr(begin, url.rfind(':') - begin).c_str(), &address.sin_addr);
+  return address;
+}
+
 std::string EscapeRegex(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
@@ -46,6 +60,22 @@ std::string EscapeRegex(const std::string& text) {
     escaped += c;
   }
   return escaped;
+}
+
+// The address by which this host would send to the group; empty when it could not.
+std::string SourceAddress(const BusConfig& config) {
+  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (fd < 0) return {};
+  const sockaddr_in group = GroupOf(config.url);
+  sockaddr_in source{};
+  socklen_t length = sizeof(source);
+  const bool found = connect(fd, reinterpret_cast<const sockaddr*>(&group), sizeof(group)) == 0 &&
+                     getsockname(fd, reinterpret_cast<sockaddr*>(&source), &length) == 0;
+  close(fd);
+  std::array<char, INET_ADDRSTRLEN> text{};
+  if (!found || inet_ntop(AF_INET, &source.sin_addr, text.data(), text.size()) == nullptr)
+    return {};
+  return text.data();
 }
 
 // Granted buffer of the UDP socket that is bound to `port`; -1 when `fd` is no such socket.
@@ -62,20 +92,54 @@ std::int64_t BufferOfSocket(int fd, int port) {
 
 }  // namespace
 
-LcmConnection::LcmConnection(const BusConfig& config)
-    : config_(config), full_url_(FullUrl(config)), lcm_(lcm_create(full_url_.c_str())) {
-  if (lcm_ == nullptr) throw std::runtime_error("cannot open LCM at " + full_url_ + kAdvice);
+LcmConnection::LcmConnection(const BusConfig& config, MissingNetwork missing_network)
+    : config_(config),
+      full_url_(FullUrl(config)),
+      may_wait_(missing_network == MissingNetwork::kWait) {
+  if (!Open() && !may_wait_) throw std::runtime_error(problem_);
 }
 
 LcmConnection::~LcmConnection() {
-  lcm_destroy(lcm_);
+  Close();
+}
+
+bool LcmConnection::Open() {
+  source_address_ = SourceAddress(config_);
+  lcm_ = lcm_create(full_url_.c_str());
+  problem_ = lcm_ == nullptr ? "cannot open LCM at " + full_url_ + kAdvice : std::string();
+  for (Subscription& subscription : subscriptions_) {
+    if (lcm_ == nullptr || !SubscribeInLcm(subscription)) break;
+  }
+  if (lcm_ != nullptr && !problem_.empty()) Close();
+  return lcm_ != nullptr;
+}
+
+void LcmConnection::Close() {
+  if (lcm_ != nullptr) lcm_destroy(lcm_);
+  lcm_ = nullptr;
+  file_descriptor_ = -1;
+}
+
+bool LcmConnection::KeepOpen() {
+  if (is_open()) {
+    const std::string address = SourceAddress(config_);
+    if (address == source_address_) return false;
+    // Without a way out nothing is gained by closing: what comes back may be the same network.
+    if (address.empty()) {
+      source_address_.clear();
+      return false;
+    }
+    Close();
+  }
+  return Open();
 }
 
 bool LcmConnection::Publish(const std::string& channel, std::span<const std::byte> bytes) {
+  if (!is_open()) return false;
   errno = 0;
   const auto size = static_cast<unsigned>(bytes.size());
   const bool sent = lcm_publish(lcm_, channel.c_str(), bytes.data(), size) == 0;
-  if (!sent && !has_sent_) {
+  if (!sent && !has_sent_ && !may_wait_) {
     throw std::runtime_error("cannot publish " + std::to_string(bytes.size()) + " bytes on " +
                              channel + " at " + full_url_ + ": " + std::strerror(errno) + kAdvice);
   }
@@ -84,15 +148,26 @@ bool LcmConnection::Publish(const std::string& channel, std::span<const std::byt
 }
 
 void LcmConnection::Subscribe(const std::string& channel, BytesHandler handler) {
-  subscriptions_.push_back({this, std::move(handler)});
-  lcm_subscription_t* const handle = lcm_subscribe(
-      lcm_, EscapeRegex(channel).c_str(), &LcmConnection::OnMessage, &subscriptions_.back());
-  if (handle == nullptr) {
+  subscriptions_.push_back({this, channel, std::move(handler)});
+  if (!is_open() || SubscribeInLcm(subscriptions_.back())) return;
+  if (may_wait_) {
+    Close();
+  } else {
     subscriptions_.pop_back();
-    throw std::runtime_error("cannot receive from LCM at " + full_url_ + kAdvice);
+    throw std::runtime_error(problem_);
+  }
+}
+
+bool LcmConnection::SubscribeInLcm(Subscription& subscription) {
+  lcm_subscription_t* const handle = lcm_subscribe(
+      lcm_, EscapeRegex(subscription.channel).c_str(), &LcmConnection::OnMessage, &subscription);
+  if (handle == nullptr) {
+    problem_ = "cannot receive from LCM at " + full_url_ + kAdvice;
+    return false;
   }
   lcm_subscription_set_queue_capacity(handle, kQueueCapacity);
   file_descriptor_ = lcm_get_fileno(lcm_);
+  return true;
 }
 
 void LcmConnection::OnMessage(const lcm_recv_buf_t* buffer, const char* /*channel*/, void* user) {

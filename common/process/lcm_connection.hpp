@@ -16,13 +16,16 @@ struct _lcm_recv_buf_t;
 
 namespace clearway::process {
 
+enum class MissingNetwork;
+
 /// One LCM object. Handlers may throw: the exception is kept while LCM's C code unwinds and leaves
 /// through HandleOne().
 class LcmConnection {
  public:
   using BytesHandler = std::function<void(std::span<const std::byte>)>;
 
-  explicit LcmConnection(const BusConfig& config);
+  /// Throws std::runtime_error when it cannot be opened and is not to wait.
+  LcmConnection(const BusConfig& config, MissingNetwork missing_network);
   ~LcmConnection();
   LcmConnection(const LcmConnection&) = delete;
   LcmConnection& operator=(const LcmConnection&) = delete;
@@ -37,6 +40,17 @@ class LcmConnection {
   /// Handles one waiting message, if there is one; tells whether there was.
   bool HandleOne();
 
+  [[nodiscard]] bool is_open() const { return lcm_ != nullptr; }
+  [[nodiscard]] const std::string& url() const { return full_url_; }
+
+  /// Why it is not open; empty: it is.
+  [[nodiscard]] const std::string& problem() const { return problem_; }
+
+  /// For who waits for the network, now and then: opens what is not open yet, and opens anew when
+  /// multicast now leaves by another address than it did when memberships were taken. True when it
+  /// was opened. Not from within a handler.
+  bool KeepOpen();
+
   /// Readable while messages wait; -1 before the first Subscribe().
   [[nodiscard]] int file_descriptor() const { return file_descriptor_; }
 
@@ -46,12 +60,19 @@ class LcmConnection {
  private:
   struct Subscription {
     LcmConnection* connection;
+    std::string channel;
     BytesHandler handler;
   };
+  bool Open();
+  void Close();
+  bool SubscribeInLcm(Subscription& subscription);
   static void OnMessage(const ::_lcm_recv_buf_t* buffer, const char* channel, void* user);
 
   BusConfig config_;
   std::string full_url_;
+  bool may_wait_;
+  std::string problem_;
+  std::string source_address_;  // By which multicast leaves; empty: no way.
   ::_lcm_t* lcm_ = nullptr;
   int file_descriptor_ = -1;
   bool has_sent_ = false;

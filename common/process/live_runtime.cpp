@@ -25,6 +25,7 @@ constexpr int kMessagesInARow = 64;
 // Nor do timers wait for longer than this when each message is much work.
 constexpr std::int64_t kTimersWaitUs = 10'000;
 constexpr std::int64_t kLongestWaitUs = 1'000'000;
+constexpr std::int64_t kReconnectUs = 1'000'000;
 
 template <typename Clock>
 std::int64_t NowUs() {
@@ -35,8 +36,9 @@ std::int64_t NowUs() {
 int OpenSignalFd() {
   sigset_t signals;
   sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGCHLD, SIGWINCH}) {
+    sigaddset(&signals, signal);
+  }
   // Blocked before LCM starts its thread, so that no thread takes them but ours.
   if (pthread_sigmask(SIG_BLOCK, &signals, nullptr) != 0) {
     throw std::runtime_error("cannot block signals");
@@ -46,13 +48,23 @@ int OpenSignalFd() {
   return fd;
 }
 
+bool AsksToEnd(std::uint32_t signal) {
+  return signal != SIGCHLD && signal != SIGWINCH;
+}
+
 }  // namespace
 
-LiveRuntime::LiveRuntime(const BusesConfig& buses, std::string channel_prefix)
+LiveRuntime::LiveRuntime(const BusesConfig& buses,
+                         std::string channel_prefix,
+                         MissingNetwork missing_network)
     : buses_(buses), channel_prefix_(std::move(channel_prefix)), signal_fd_(OpenSignalFd()) {
-  connections_.push_back(std::make_unique<LcmConnection>(buses.local));
+  connections_.push_back(std::make_unique<LcmConnection>(buses.local, missing_network));
   if (buses.shared.url != buses.local.url) {
-    connections_.push_back(std::make_unique<LcmConnection>(buses.shared));
+    connections_.push_back(std::make_unique<LcmConnection>(buses.shared, missing_network));
+  }
+  if (missing_network == MissingNetwork::kWait) {
+    if (!IsConnected()) LogWarning("no network yet: " + connections_.back()->problem());
+    Every(kReconnectUs, [this] { KeepConnected(); });
   }
 }
 
@@ -67,7 +79,7 @@ LcmConnection& LiveRuntime::ConnectionOf(messages::BusId bus) const {
 void LiveRuntime::Run() {
   std::vector<bool> readable(connections_.size());
   while (!stop_) {
-    WaitForEvents(readable);
+    const std::vector<int> ready = WaitForEvents(readable);
     // What has arrived comes before what is due: a process that did not get the processor for a
     // while must not judge its input as missing before it has looked.
     const std::int64_t until_us = MonotonicUs() + kTimersWaitUs;
@@ -76,6 +88,7 @@ void LiveRuntime::Run() {
         if (!connections_[i]->HandleOne() || MonotonicUs() >= until_us) break;
       }
     }
+    HandleDescriptors(ready);
     RunDueTimers();
   }
 }
@@ -92,7 +105,7 @@ void LiveRuntime::RunFor(std::int64_t duration_us) {
   Run();
 }
 
-void LiveRuntime::WaitForEvents(std::vector<bool>& readable) {
+std::vector<int> LiveRuntime::WaitForEvents(std::vector<bool>& readable) {
   const std::int64_t due_us = timers_.NextDue().value_or(std::numeric_limits<std::int64_t>::max());
   const std::int64_t wait_us = std::clamp<std::int64_t>(due_us - MonotonicUs(), 0, kLongestWaitUs);
   const timespec timeout{wait_us / 1'000'000, (wait_us % 1'000'000) * 1000};
@@ -100,19 +113,61 @@ void LiveRuntime::WaitForEvents(std::vector<bool>& readable) {
   for (const auto& connection : connections_) {
     events.push_back({connection->file_descriptor(), POLLIN, 0});  // -1 is ignored by poll.
   }
+  const std::size_t first_watched = events.size();
+  for (const auto& [fd, handler] : watched_) events.push_back({fd, POLLIN, 0});
   const int count = ppoll(events.data(), events.size(), &timeout, nullptr);
   if (count < 0 && errno != EINTR) {
     throw std::runtime_error(std::string("ppoll: ") + std::strerror(errno));
   }
-  for (std::size_t i = 0; i < readable.size(); ++i) {
-    readable[i] = count > 0 && (events[i + 1].revents & POLLIN) != 0;
+  if (count <= 0) {
+    readable.assign(readable.size(), false);
+    return {};
   }
-  if (count > 0 && events[0].revents != 0) {
-    // Taken off the queue, so that a later RunFor() is not ended by the same signal.
-    signalfd_siginfo signal{};
-    while (read(signal_fd_, &signal, sizeof(signal)) == sizeof(signal)) {
+  for (std::size_t i = 0; i < readable.size(); ++i) {
+    readable[i] = (events[i + 1].revents & POLLIN) != 0;
+  }
+  if (events[0].revents != 0) TakeSignals();
+  std::vector<int> ready;
+  for (std::size_t i = first_watched; i < events.size(); ++i) {
+    if (events[i].revents != 0) ready.push_back(events[i].fd);
+  }
+  return ready;
+}
+
+// All are taken off the queue, so that a later RunFor() is not ended by the same signal.
+void LiveRuntime::TakeSignals() {
+  signalfd_siginfo signal{};
+  while (read(signal_fd_, &signal, sizeof(signal)) == sizeof(signal)) {
+    if (on_signal_) {
+      on_signal_(static_cast<int>(signal.ssi_signo));
+    } else if (AsksToEnd(signal.ssi_signo)) {
+      stop_ = true;
     }
-    stop_ = true;
+  }
+}
+
+void LiveRuntime::HandleDescriptors(const std::vector<int>& ready) {
+  for (const int fd : ready) {
+    const auto found = watched_.find(fd);
+    if (found == watched_.end() || stop_) continue;       // Unwatched by a handler before it.
+    const std::function<void()> handler = found->second;  // It may unwatch itself.
+    handler();
+  }
+}
+
+void LiveRuntime::WatchDescriptor(int fd, std::function<void()> handler) {
+  watched_[fd] = std::move(handler);
+}
+
+bool LiveRuntime::IsConnected() const {
+  return std::all_of(connections_.begin(), connections_.end(), [](const auto& connection) {
+    return connection->is_open();
+  });
+}
+
+void LiveRuntime::KeepConnected() {
+  for (const auto& connection : connections_) {
+    if (connection->KeepOpen()) LogInfo("the network is there: " + connection->url());
   }
 }
 
