@@ -16,6 +16,7 @@ ALLOWED = {
     "common/config": [],
     "common/messages": ["common/core"],
     "common/io": ["common/core"],
+    "common/host": ["common/core"],
     "common/process": ["common/core", "common/messages"],
     "common/graph": ["common"],
     "processes": ["common"],
