@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+
+#include "common/graph/options.hpp"
+#include "common/process/live_runtime.hpp"
+#include "common/process/log.hpp"
+#include "processes/procman_deputy/child_set.hpp"
+#include "processes/procman_deputy/config_digest.hpp"
+#include "processes/procman_deputy/deputy_options.hpp"
+#include "processes/procman_deputy/deputy_process.hpp"
+
+namespace clearway {
+namespace {
+
+constexpr int kExitNotPermitted = 77;
+
+// One deputy a state folder; the lock goes with the process, however it ends.
+void LockFolder(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  const std::filesystem::path file = folder / "lock";
+  const int fd = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (fd < 0 || flock(fd, LOCK_EX | LOCK_NB) != 0) {
+    throw std::runtime_error(file.string() +
+                             ": another deputy uses this folder, or it cannot be "
+                             "written: " +
+                             std::strerror(errno));
+  }
+}
+
+void OpenLogFile(const std::filesystem::path& path) {
+  if (path.empty()) return;
+  const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (fd < 0) throw std::runtime_error(path.string() + ": cannot write: " + std::strerror(errno));
+  dup2(fd, STDERR_FILENO);
+  close(fd);
+}
+
+bool MayRun(const DeputyOptions& options, const DeputyFile& file) {
+  if (geteuid() == 0 && !options.allow_root) {
+    std::fputs(
+        "clearway-deputy: started as root, and commands would run as root: start it as another "
+        "user, or say --allow-root\n",
+        stderr);
+    return false;
+  }
+  if (!options.allow_any && file.allow.empty()) {
+    process::LogWarning(std::string("nothing may run here: there is no <allow> in ") +
+                        (options.config_path.empty() ? kHostFile : options.config_path.c_str()) +
+                        " (or say --allow-any)");
+  }
+  return true;
+}
+
+// What is not kept apart by a folder of its own has no earlier life.
+std::string MarkOf(const DeputySettings& settings) {
+  return settings.id + ':' +
+         (settings.orders_file.empty() ? std::to_string(getpid())
+                                       : std::filesystem::absolute(settings.orders_file).string());
+}
+
+void KillLeftovers(ChildSet& children) {
+  const int count = children.KillLeftovers();
+  if (count == 0) return;
+  process::LogWarning(std::to_string(count) +
+                      " processes of an earlier life of this deputy were still there: killed");
+}
+
+int Serve(const DeputyOptions& options, const config::LoadResult<DeputyFile>& file) {
+  DeputySettings settings = SettingsOf(options, file.root.deputy);
+  if (!settings.orders_file.empty()) LockFolder(settings.orders_file.parent_path());
+  ConfigDigest digest(file.root.deputy.graph_config);
+  settings.config_digest = [&digest] { return digest.Get(); };
+  const process::BusConfig bus = BusOf(options, file);
+  process::LiveRuntime runtime({bus, bus}, "", process::MissingNetwork::kWait);
+  std::optional<core::procman::AllowList> allowed;
+  if (!options.allow_any) allowed.emplace(file.root.allow);
+  ChildSet children(runtime, std::move(allowed), MarkOf(settings));
+  int status = graph::kExitOk;
+  DeputyProcess deputy(runtime, settings, children, [&](int end) {
+    status = end;
+    runtime.Stop();
+  });
+  if (!settings.orders_file.empty()) deputy.BeforeFirstStart([&] { KillLeftovers(children); });
+  runtime.OnSignal([&](int signal) {
+    if (signal == SIGCHLD) {
+      children.Reap();
+    } else if (signal != SIGWINCH) {
+      deputy.ShutDown();
+    }
+  });
+  process::LogInfo("started as \"" + settings.id + "\" on " + bus.url);
+  runtime.Run();
+  process::LogInfo("stopped");
+  return status;
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app("Runs and watches the commands of one host for procman's sheriffs",
+               "clearway-deputy");
+  DeputyOptions options;
+  AddDeputyOptions(app, options);
+  graph::Options wall;  // Of which GuardedMain reads the log level.
+  app.parse_complete_callback(
+      [&] { wall.log_level = options.is_verbose ? "debug" : options.log_level; });
+  return graph::GuardedMain(app, wall, argc, argv, [&] {
+    const config::LoadResult<DeputyFile> file = LoadDeputyFile(options);
+    if (options.print_config) std::fputs(config::Print(file).c_str(), stdout);
+    if (options.print_config || options.check_config) return graph::kExitOk;
+    if (!MayRun(options, file.root)) return kExitNotPermitted;
+    OpenLogFile(options.log_file);
+    return Serve(options, file);
+  });
+}
+
+}  // namespace
+}  // namespace clearway
+
+int main(int argc, char** argv) {
+  return clearway::Main(argc, argv);
+}
