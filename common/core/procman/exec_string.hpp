@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -27,6 +28,9 @@ struct ParsedExecLine {
 /// Longer texts are refused [bytes].
 inline constexpr std::size_t kMaxExecBytes = 16384;
 
+/// Likewise once variables have their values [bytes]: a short text may name a long value often.
+inline constexpr std::size_t kMaxExpandedExecBytes = 131072;
+
 /// The value of a variable of the deputy's environment; nothing when it is not set.
 using LookupVariable = std::function<std::optional<std::string>(const std::string& name)>;
 
@@ -35,8 +39,10 @@ using LookupVariable = std::function<std::optional<std::string>(const std::strin
 /// Leading words with '=' set the child's environment and are not expanded. In all others $NAME and
 /// ${NAME} become the variable's value, also within quotes; a name that is not set, and a dollar
 /// that was taken literally (`\$`), stay as they are written. A value is never split into words.
-/// Refused: an open quote, a backslash at the end, a NUL, no program, too long a text.
-/// O(n) time.
+/// Quotes only join: `$NA"ME"` is $NAME. A character after a backslash is no part of a name.
+/// Refused: an open quote, a backslash at the end, a NUL, no program, a setting without a name, too
+/// long a text.
+/// O(n) time, n with the values.
 [[nodiscard]] ParsedExecLine ParseExecLine(std::string_view text, const LookupVariable& lookup);
 
 }  // namespace clearway::core::procman
