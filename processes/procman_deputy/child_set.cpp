@@ -344,7 +344,8 @@ std::int32_t ChildSet::CommandPidOf(std::int32_t pid) const {
 int ChildSet::KillLeftovers() {
   const std::string mark = std::string(kDeputyVariable) + '=' + deputy_mark_;
   int count = 0;
-  for (const host::ProcessEntry& process : host::ProcessTable::Read().entries()) {
+  const host::ProcessTable table = host::ProcessTable::Read();
+  for (const host::ProcessEntry& process : table.entries()) {
     if (process.pid == getpid() || !host::HasVariable(process.pid, mark)) continue;
     if (host::SendSignal(process.pid, process.start_ticks, SIGKILL)) ++count;
   }
