@@ -11,6 +11,13 @@ ReadError ErrorInLine(const std::string& file, std::size_t line, const std::stri
   return ReadError(file + ":" + std::to_string(line) + ": " + text);
 }
 
+ReadError ErrorInColumn(const std::string& file,
+                        std::size_t line,
+                        std::size_t column,
+                        const std::string& text) {
+  return ErrorInLine(file + ":" + std::to_string(line), column, text);
+}
+
 ReadError ErrorAtByte(const std::string& file, std::size_t byte, const std::string& text) {
   return ReadError(file + ": byte " + std::to_string(byte) + ": " + text);
 }

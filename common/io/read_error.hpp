@@ -23,6 +23,12 @@ class ReadError : public std::runtime_error {
                                     std::size_t line,
                                     const std::string& text);
 
+/// `file:line:column: text`. Both count from 1; a column is a byte.
+[[nodiscard]] ReadError ErrorInColumn(const std::string& file,
+                                      std::size_t line,
+                                      std::size_t column,
+                                      const std::string& text);
+
 /// `file: byte N: text`. Bytes count from 0, at the start of the file.
 [[nodiscard]] ReadError ErrorAtByte(const std::string& file,
                                     std::size_t byte,
