@@ -128,7 +128,7 @@ TEST_F(LogTest, PlayedIntoAGraphThatListensGivesEveryScan) {
   const auto log = WriteLog();
   const std::string url = TestUrl(17501);
   GraphListener listener(url);
-  run_graph::ChildProcess run("run", RunCommand(url, "live"), folder_.path() / "run.log");
+  host::ChildProcess run("run", RunCommand(url, "live"), folder_.path() / "run.log");
   ASSERT_TRUE(listener.Await([&] {
     return std::all_of(std::begin(kGraph), std::end(kGraph), [&](const char* process) {
       const auto status = listener.statuses.find(process);
@@ -136,7 +136,7 @@ TEST_F(LogTest, PlayedIntoAGraphThatListensGivesEveryScan) {
     });
   })) << run.LastWords();
 
-  run_graph::ChildProcess player(
+  host::ChildProcess player(
       "lcm-logplayer",
       {"lcm-logplayer", "-l", url + "?ttl=0", "-s", kSpeed, "-e", "LIDAR_POINTS", log},
       folder_.path() / "logplayer.log");

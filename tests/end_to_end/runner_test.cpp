@@ -53,7 +53,7 @@ class RunnerTest : public testing::Test {
   static constexpr int kPort = 17600;
   TestFolder folder_;
   GraphListener listener_{TestUrl(kPort)};
-  std::optional<run_graph::ChildProcess> run_;
+  std::optional<host::ChildProcess> run_;
 };
 
 TEST_F(RunnerTest, InterruptedItEndsTheGraphAndStillSumsUp) {

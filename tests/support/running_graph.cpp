@@ -67,8 +67,7 @@ void RunningGraph::Start(const std::string& name) {
   if (name == "play") {
     command.insert(command.end(), play_arguments_.begin(), play_arguments_.end());
   }
-  processes_[name] =
-      std::make_unique<run_graph::ChildProcess>(name, command, folder_ / (name + ".log"));
+  processes_[name] = std::make_unique<host::ChildProcess>(name, command, folder_ / (name + ".log"));
 }
 
 void RunningGraph::StartAll() {

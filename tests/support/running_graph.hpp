@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/run_graph/child_processes.hpp"
+#include "common/host/child_process.hpp"
 
 namespace clearway::test {
 
@@ -43,7 +43,7 @@ class RunningGraph {
   /// SIGKILL; returns when it is gone.
   void Kill(const std::string& name);
   void Signal(const std::string& name, int signal);
-  [[nodiscard]] run_graph::ChildProcess& process(const std::string& name) {
+  [[nodiscard]] host::ChildProcess& process(const std::string& name) {
     return *processes_.at(name);
   }
 
@@ -51,7 +51,7 @@ class RunningGraph {
   std::vector<std::string> arguments_;
   std::vector<std::string> play_arguments_;
   std::filesystem::path folder_;
-  std::map<std::string, std::unique_ptr<run_graph::ChildProcess>> processes_;
+  std::map<std::string, std::unique_ptr<host::ChildProcess>> processes_;
 };
 
 }  // namespace clearway::test

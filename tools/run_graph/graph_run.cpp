@@ -124,7 +124,7 @@ void GraphRun::StartProcesses() {
     std::vector<std::string> command{settings_.program_folder / ProgramOf(process)};
     command.insert(
         command.end(), settings_.child_arguments.begin(), settings_.child_arguments.end());
-    processes_.push_back(std::make_unique<ChildProcess>(
+    processes_.push_back(std::make_unique<host::ChildProcess>(
         process, command, settings_.output_folder / (process + ".log")));
   }
 }
@@ -144,7 +144,8 @@ void GraphRun::StartFeeding() {
   } else {
     return;
   }
-  feeder_ = std::make_unique<ChildProcess>("play", command, settings_.output_folder / "play.log");
+  feeder_ =
+      std::make_unique<host::ChildProcess>("play", command, settings_.output_folder / "play.log");
 }
 
 // Statuses of a graph that somebody else runs on the same bus.
@@ -241,7 +242,8 @@ void GraphRun::Supervise() {
 
 double GraphRun::GraphCpuSeconds() const {
   double sum_s = 0.0;
-  for (const auto& process : processes_) sum_s += process->Use().value_or(ResourceUse{}).cpu_s;
+  for (const auto& process : processes_)
+    sum_s += process->Use().value_or(host::ResourceUse{}).cpu_s;
   return sum_s;
 }
 
@@ -250,7 +252,7 @@ void GraphRun::MeasureMachine() {
   const double elapsed_s = static_cast<double>(runtime_.MonotonicUs() - feeding_start_us_) * 1e-6;
   use.cpu_cores = (GraphCpuSeconds() - cpu_at_start_s_) / elapsed_s;
   for (const auto& process : processes_) {
-    use.pss_mb += process->Use().value_or(ResourceUse{}).pss_mb;
+    use.pss_mb += process->Use().value_or(host::ResourceUse{}).pss_mb;
   }
   machine_use_ = use;
 }

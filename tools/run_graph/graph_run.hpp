@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "common/host/child_process.hpp"
 #include "common/io/lcm_log.hpp"
 #include "common/process/live_runtime.hpp"
 #include "common/process/node.hpp"
-#include "tools/run_graph/child_processes.hpp"
 #include "tools/run_graph/run_statistics.hpp"
 
 namespace clearway::run_graph {
@@ -88,8 +88,8 @@ class GraphRun {
   RunSettings settings_;
   RunStatistics statistics_;
   std::unique_ptr<io::LcmLogWriter> log_;
-  std::vector<std::unique_ptr<ChildProcess>> processes_;
-  std::unique_ptr<ChildProcess> feeder_;
+  std::vector<std::unique_ptr<host::ChildProcess>> processes_;
+  std::unique_ptr<host::ChildProcess> feeder_;
   Phase phase_ = Phase::kStarting;
   std::int64_t phase_start_us_ = 0;
   std::int64_t feeding_start_us_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/run_graph/child_processes.hpp"
+#include "common/host/child_process.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -18,15 +18,23 @@
 
 #include <linux/close_range.h>
 
-namespace clearway::run_graph {
+#include "common/host/proc_file.hpp"
+#include "common/host/process_table.hpp"
+
+namespace clearway::host {
 namespace {
 
 constexpr std::size_t kLastLines = 12;
 
+struct Parent {
+  pid_t pid;
+  int death_signal;
+};
+
 // In the child, between fork and exec: only calls that are safe there.
-[[noreturn]] void Exec(char* const* arguments, int stderr_fd, int error_fd, pid_t parent) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(127);
+[[noreturn]] void Exec(char* const* arguments, int stderr_fd, int error_fd, const Parent& parent) {
+  prctl(PR_SET_PDEATHSIG, parent.death_signal);
+  if (getppid() != parent.pid) _exit(127);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -44,9 +52,24 @@ int Decode(int status) {
 
 }  // namespace
 
+std::optional<ResourceUse> UseOf(pid_t pid) {
+  constexpr std::size_t kMaxBytes = 65536;
+  const auto entry = ReadProcess(pid);
+  if (!entry) return std::nullopt;
+  ResourceUse use;
+  use.cpu_s = SecondsOf(entry->cpu_ticks);
+  const std::string file = "/proc/" + std::to_string(pid) + "/smaps_rollup";
+  std::istringstream memory(ReadProcFile(file, kMaxBytes).value_or(std::string()));
+  for (std::string line; std::getline(memory, line);) {
+    if (line.starts_with("Pss:")) use.pss_mb = std::stod(line.substr(4)) * 1024.0 / 1e6;
+  }
+  return use;
+}
+
 ChildProcess::ChildProcess(std::string name,
                            const std::vector<std::string>& command,
-                           const std::filesystem::path& stderr_file)
+                           const std::filesystem::path& stderr_file,
+                           int parent_death_signal)
     : name_(std::move(name)), stderr_file_(stderr_file) {
   std::vector<char*> arguments;
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -60,7 +83,7 @@ ChildProcess::ChildProcess(std::string name,
     close(stderr_fd);
     throw std::runtime_error(std::string("pipe: ") + std::strerror(errno));
   }
-  const pid_t parent = getpid();
+  const Parent parent{getpid(), parent_death_signal};
   pid_ = fork();
   if (pid_ == 0) Exec(arguments.data(), stderr_fd, error_pipe[1], parent);
   close(stderr_fd);
@@ -102,25 +125,7 @@ int ChildProcess::WaitOrKill(int timeout_ms) {
 }
 
 std::optional<ResourceUse> ChildProcess::Use() const {
-  if (exit_status_) return std::nullopt;
-  const std::string folder = "/proc/" + std::to_string(pid_);
-  std::ifstream stat_file(folder + "/stat");
-  std::string stat((std::istreambuf_iterator<char>(stat_file)), {});
-  const std::size_t name_end = stat.rfind(')');  // The name may hold spaces and brackets.
-  if (name_end == std::string::npos) return std::nullopt;
-  std::istringstream fields(stat.substr(name_end + 1));
-  std::string skipped;
-  for (int i = 3; i <= 13; ++i) fields >> skipped;
-  double user_ticks = 0.0;
-  double system_ticks = 0.0;
-  fields >> user_ticks >> system_ticks;
-  ResourceUse use;
-  use.cpu_s = (user_ticks + system_ticks) / static_cast<double>(sysconf(_SC_CLK_TCK));
-  std::ifstream memory(folder + "/smaps_rollup");
-  for (std::string line; std::getline(memory, line);) {
-    if (line.starts_with("Pss:")) use.pss_mb = std::stod(line.substr(4)) * 1024.0 / 1e6;
-  }
-  return use;
+  return exit_status_ ? std::nullopt : UseOf(pid_);
 }
 
 std::string ChildProcess::LastWords() const {
@@ -135,4 +140,4 @@ std::string ChildProcess::LastWords() const {
   return text;
 }
 
-}  // namespace clearway::run_graph
+}  // namespace clearway::host

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <csignal>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <sys/types.h>
 #include <vector>
 
-namespace clearway::run_graph {
+namespace clearway::host {
 
 /// What a process has used so far.
 struct ResourceUse {
@@ -15,14 +16,19 @@ struct ResourceUse {
   double pss_mb = 0.0;  ///< Proportional share of its memory [1e6 bytes].
 };
 
+/// Of a process; nothing when it is gone or another user's.
+[[nodiscard]] std::optional<ResourceUse> UseOf(pid_t pid);
+
 /// A program that was started here. It dies with the thread that started it.
 class ChildProcess {
  public:
-  /// Starts `program`, found by PATH when it has no slash; its stderr goes to the file. Throws
-  /// std::runtime_error when it cannot be started.
+  /// Starts a program, found by PATH when it has no slash; its stderr goes to the file. Throws
+  /// std::runtime_error when it cannot be started. `parent_death_signal` is what it gets when the
+  /// thread that started it ends.
   ChildProcess(std::string name,
                const std::vector<std::string>& command,
-               const std::filesystem::path& stderr_file);
+               const std::filesystem::path& stderr_file,
+               int parent_death_signal = SIGKILL);
 
   /// Kills it when it still runs.
   ~ChildProcess();
@@ -53,4 +59,4 @@ class ChildProcess {
   std::optional<int> exit_status_;
 };
 
-}  // namespace clearway::run_graph
+}  // namespace clearway::host
