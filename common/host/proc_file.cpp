@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <fcntl.h>
-#include <system_error>
 #include <unistd.h>
 
 #include "common/host/descriptor.hpp"
@@ -37,7 +37,8 @@ std::optional<std::string> ReadProcFile(const std::string& path, std::size_t max
 }
 
 std::string WithReason(const std::string& what) {
-  return what + ": " + std::generic_category().message(errno);
+  const char* const reason = strerrordesc_np(errno);
+  return what + ": " + (reason == nullptr ? "unknown reason" : reason);
 }
 
 }  // namespace clearway::host

@@ -190,8 +190,11 @@ void RotatingLog::Lose(std::size_t bytes) {
 
 void RotatingLog::SetStamp(std::int64_t utime) {
   std::int64_t second = utime / kSecondUs;
-  if (utime % kSecondUs < 0) --second;
-  const auto milliseconds = static_cast<int>((utime - second * kSecondUs) / 1000);
+  std::int64_t rest_us = utime % kSecondUs;
+  if (rest_us < 0) {
+    --second;
+    rest_us += kSecondUs;
+  }
   if (second != stamp_second_) {
     stamp_second_ = second;
     const std::time_t time = second;
@@ -202,8 +205,9 @@ void RotatingLog::SetStamp(std::int64_t utime) {
     stamp_ = text.data();
   }
   const std::size_t dot = stamp_.find('.');
-  for (int i = 3, rest = milliseconds; i > 0; --i, rest /= 10) {
-    stamp_[dot + static_cast<std::size_t>(i)] = static_cast<char>('0' + rest % 10);
+  auto milliseconds = rest_us / 1000;
+  for (std::size_t i = 3; i > 0; --i, milliseconds /= 10) {
+    stamp_[dot + i] = static_cast<char>('0' + milliseconds % 10);
   }
 }
 

@@ -61,7 +61,7 @@ Terminal OpenTerminal() {
     Fail("cannot name a pseudo terminal");
   }
   terminal.slave = Raised(Descriptor(open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC)));
-  if (!terminal.slave.is_open()) Fail(std::string("cannot open ") + name.data());
+  if (!terminal.slave.is_open()) Fail(std::string("cannot open the terminal ") + name.data());
 
   termios modes{};
   if (tcgetattr(terminal.slave.get(), &modes) != 0) Fail("cannot read a terminal's modes");
@@ -74,13 +74,16 @@ Terminal OpenTerminal() {
   return terminal;
 }
 
+void RefuseNul(const std::string& text) {
+  if (text.find('\0') == std::string::npos) return;
+  throw std::invalid_argument("a NUL in what a child is to be started with: " + text);
+}
+
 std::vector<char*> PointersTo(const std::vector<std::string>& words) {
   std::vector<char*> pointers;
   pointers.reserve(words.size() + 1);
   for (const std::string& word : words) {
-    if (word.find('\0') != std::string::npos) {
-      throw std::invalid_argument("a NUL in an argument or variable of a child: " + word);
-    }
+    RefuseNul(word);
     pointers.push_back(const_cast<char*>(word.c_str()));
   }
   pointers.push_back(nullptr);
@@ -94,14 +97,15 @@ void Say(const char* text) {
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text, std::strlen(text));
 }
 
-[[noreturn]] void GiveUp(const Plan& plan, const char* action, const char* object) {
-  const int error = errno;
-  const char* const reason = strerrordesc_np(error);
+// `problem` and `object` may be empty: then the reason tells all.
+[[noreturn]] void GiveUp(const Plan& plan, const char* problem = "", const char* object = "") {
+  const char* const reason = strerrordesc_np(errno);
   Say("cannot run ");
   Say(plan.program);
   Say(": ");
-  Say(action);
+  Say(problem);
   Say(object);
+  if (*problem != '\0') Say(": ");
   Say(reason == nullptr ? "unknown reason" : reason);
   Say("\n");
   _exit(kCannotRun);
@@ -128,20 +132,14 @@ void ResetSignals() {
     if (dup2(plan.terminal_fd, fd) < 0) _exit(kCannotRun);
   }
   errno = error;
-  if (!has_session || !has_terminal) GiveUp(plan, "no session on a terminal: ", "");
-  if (close_range(STDERR_FILENO + 1, ~0U, 0) != 0) GiveUp(plan, "cannot close descriptors: ", "");
+  if (!has_session || !has_terminal) GiveUp(plan, "no session on a terminal");
+  if (close_range(STDERR_FILENO + 1, ~0U, 0) != 0) GiveUp(plan, "cannot close descriptors");
   ResetSignals();
   if (plan.folder != nullptr && chdir(plan.folder) != 0) {
-    // In three calls, since nothing can be put together here.
-    const int reason = errno;
-    Say("cannot enter ");
-    Say(plan.folder);
-    Say("; ");
-    errno = reason;
-    GiveUp(plan, "", "");
+    GiveUp(plan, "cannot enter ", plan.folder);
   }
   execve(plan.program, plan.arguments.data(), plan.environment.data());
-  GiveUp(plan, "", "");
+  GiveUp(plan);
 }
 
 // No handler of the parent's may run in the child.
@@ -165,12 +163,14 @@ TerminalChild StartOnTerminal(const ChildSettings& settings) {
   const bool moves = !settings.working_folder.empty();
   const std::string program =
       moves ? std::filesystem::absolute(settings.program).string() : settings.program.string();
-  Terminal terminal = OpenTerminal();
+  RefuseNul(program);
+  RefuseNul(settings.working_folder.string());
   Plan plan;
   plan.program = program.c_str();
   plan.folder = moves ? settings.working_folder.c_str() : nullptr;
   plan.arguments = PointersTo(settings.arguments);
   plan.environment = PointersTo(settings.environment);
+  Terminal terminal = OpenTerminal();
   plan.terminal_fd = terminal.slave.get();
   plan.parent = getpid();
   plan.parent_death_signal = settings.parent_death_signal;

@@ -27,7 +27,9 @@ struct ChildSettings {
 /// A child on a terminal of its own, so that it writes line by line.
 struct TerminalChild {
   pid_t pid = -1;
-  int output_fd = -1;             ///< The terminal's other end; non-blocking; the owner closes it.
+  /// The terminal's other end; non-blocking. The owner closes it, which hangs up (SIGHUP) what
+  /// still runs on it.
+  int output_fd = -1;
   std::uint64_t start_ticks = 0;  ///< With the pid: who it is, also after its pid is used again.
 };
 
