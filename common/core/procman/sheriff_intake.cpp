@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a sheriff takes from messages.
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "common/core/procman/sheriff.hpp"
+
+namespace clearway::core::procman {
+namespace {
+
+// A report that is older than the one before it by less than this came out of order; by more: the
+// sender's clock was set back, or it is another sender or another pass of a log.
+constexpr std::int64_t kReorderedUs = 2'000'000;
+// Two such steps within this: there are two senders.
+constexpr std::int64_t kTwoSendersUs = 10'000'000;
+constexpr std::int64_t kOrdersActiveUs = 3'000'000;
+constexpr std::int64_t kHoldMarginUs = 1'000'000;
+// Ids come from outside: what claims more is not believed.
+constexpr std::size_t kMaxDeputies = 1000;
+constexpr std::size_t kMaxSheriffs = 64;
+constexpr std::size_t kMaxCommands = 10000;
+
+std::int32_t StartsOf(const KnownDeputy& deputy, const std::string& command) {
+  const auto health = deputy.healths.find(command);
+  return health == deputy.healths.end() ? -1 : health->second.starts;
+}
+
+// What this report says of a command, and what the ones before it add.
+ReportedCommand Follow(const ReportedCommand* before,
+                       const CommandReport& report,
+                       const KnownDeputy& deputy,
+                       std::int64_t now_us) {
+  const std::int32_t starts = StartsOf(deputy, report.spec.id);
+  ReportedCommand next{.report = report, .starts = starts};
+  if (before != nullptr && before->report.pid == report.pid &&
+      before->report.run_id == report.run_id) {
+    next = *before;
+    next.report = report;
+    next.starts = starts;
+    return next;
+  }
+  const bool is_same_run = before != nullptr && before->report.run_id == report.run_id;
+  next.since_us = now_us;
+  next.was_seen_down = before != nullptr || deputy.report.has_value();
+  next.was_seen_up = report.pid != 0 || (is_same_run && before->was_seen_up);
+  if (is_same_run) next.deaths = before->deaths + (before->report.pid != 0 ? 1 : 0);
+  next.is_health_old =
+      before != nullptr && (starts < 0 || before->starts < 0 || starts == before->starts);
+  return next;
+}
+
+}  // namespace
+
+void Sheriff::OnReport(const DeputyReport& report, std::int64_t now_us) {
+  if (report.deputy_id.empty()) return;
+  if (deputies_.size() >= kMaxDeputies && !deputies_.contains(report.deputy_id)) return;
+  KnownDeputy& deputy = deputies_[report.deputy_id];
+  deputy.id = report.deputy_id;
+  if (deputy.report && report.utime < deputy.report->utime) {
+    if (deputy.report->utime - report.utime < kReorderedUs) return;
+    deputy.stamps_back = now_us - deputy.stamp_back_us < kTwoSendersUs ? deputy.stamps_back + 1 : 1;
+    deputy.stamp_back_us = now_us;
+  }
+  std::map<std::string, ReportedCommand> commands;
+  for (const CommandReport& each : report.commands) {
+    if (each.spec.id.empty()) continue;
+    const auto before = deputy.commands.find(each.spec.id);
+    const ReportedCommand* known = before == deputy.commands.end() ? nullptr : &before->second;
+    commands[each.spec.id] = Follow(known, each, deputy, now_us);
+    // The second half of a restart, which the reference deputy does only when it is told again.
+    const auto command = commands_.find(each.spec.id);
+    if (known != nullptr && known->report.pid != 0 && each.pid == 0 && command != commands_.end() &&
+        command->second.run_id != each.run_id) {
+      deputy.is_changed = true;
+    }
+  }
+  deputy.commands = std::move(commands);
+  deputy.report = report;
+  deputy.report->commands.clear();
+  deputy.heard_us = now_us;
+  for (const auto& [id, reported] : deputy.commands) TakeOver(deputy, reported);
+  for (auto& [id, command] : commands_) {
+    if (command.deputy == deputy.id && command.waits_to_restart) {
+      Resolve(command, *command.waits_to_restart ? Wish::kRestart : Wish::kStart);
+      deputy.is_changed = true;
+    }
+  }
+  RefineByHealth(deputy, now_us);
+  TakeWhatTheReportLacks(deputy);
+  NoteChanges(now_us, report.utime);
+}
+
+// Nothing that runs is restarted: what nobody asked us for goes on as it is.
+void Sheriff::TakeOver(KnownDeputy& deputy, const ReportedCommand& reported) {
+  const CommandReport& report = reported.report;
+  if (commands_.size() >= kMaxCommands && !commands_.contains(report.spec.id)) return;
+  const auto [entry, is_new] = commands_.try_emplace(report.spec.id);
+  KnownCommand& command = entry->second;
+  const auto is_listed_at_home = [&] {
+    const KnownDeputy* home = Find(command.deputy);
+    return home != nullptr && home->commands.contains(report.spec.id);
+  };
+  if (is_new || (!command.is_in_file && !command.is_asked && !is_listed_at_home())) {
+    command = {.spec = report.spec, .deputy = deputy.id, .noted = command.noted};
+  }
+  if (command.deputy != deputy.id) return;
+  if (report.pid != 0 && report.spec.exec != command.spec.exec) {
+    command.old_exec_pid = report.pid;
+    command.old_exec = report.spec.exec;
+  } else if (report.pid != command.old_exec_pid) {
+    command.old_exec_pid = 0;
+  }
+  if (mode_ == Mode::kObserve) {
+    if (!command.is_in_file) command.spec = report.spec;
+    if (command.is_mirrored || command.run_id == report.run_id) return;
+    command.run_id = report.run_id;
+    if (report.pid != 0) command.force_quit = command.was_stopped = false;
+    return;
+  }
+  if (command.run_id == 0) command.run_id = report.run_id;
+  // Ended by itself: a deputy that is started anew is not to run it again. Where the deputy tells
+  // its health, that decides: it may be about to start it again.
+  if (report.pid == 0 && report.run_id == command.run_id && report.run_id != 0 &&
+      !command.spec.auto_respawn && !deputy.health) {
+    command.force_quit = true;
+  }
+}
+
+void Sheriff::TakeWhatTheReportLacks(KnownDeputy& deputy) {
+  for (auto entry = commands_.begin(); entry != commands_.end();) {
+    KnownCommand& command = entry->second;
+    const bool is_listed = std::any_of(deputies_.begin(), deputies_.end(), [&](const auto& d) {
+      return d.second.commands.contains(entry->first);
+    });
+    const bool is_observed = mode_ == Mode::kObserve && !command.is_mirrored;
+    const bool is_gone = !is_listed && command.deputy == deputy.id &&
+                         (command.is_removed || (is_observed && !command.is_in_file));
+    if (!is_gone) {
+      ++entry;
+      continue;
+    }
+    if (mode_ == Mode::kObserve && command.is_in_file) {
+      command.is_removed = false;
+      ++entry;
+      continue;
+    }
+    Note({.utime = deputy.report ? deputy.report->utime : 0,
+          .deputy = deputy.id,
+          .command = entry->first,
+          .from = std::string(WordsFor(command.noted.value_or(Status::kUnknown))),
+          .to = {},
+          .text = "removed"});
+    entry = commands_.erase(entry);
+  }
+}
+
+void Sheriff::OnHealth(const DeputyHealth& health, std::int64_t utime, std::int64_t now_us) {
+  if (health.deputy_id.empty()) return;
+  if (deputies_.size() >= kMaxDeputies && !deputies_.contains(health.deputy_id)) return;
+  KnownDeputy& deputy = deputies_[health.deputy_id];
+  deputy.id = health.deputy_id;
+  deputy.health = health;
+  deputy.health->commands.clear();
+  deputy.health_us = now_us;
+  deputy.healths.clear();
+  for (const CommandHealthReport& each : health.commands) deputy.healths[each.id] = each;
+  for (auto& [id, reported] : deputy.commands) reported.is_health_old = false;
+  RefineByHealth(deputy, now_us);
+  NoteChanges(now_us, utime);
+}
+
+void Sheriff::RefineByHealth(KnownDeputy& deputy, std::int64_t now_us) {
+  for (const auto& [id, health] : deputy.healths) {
+    const auto known = commands_.find(id);
+    const auto listed = deputy.commands.find(id);
+    if (known == commands_.end() || listed == deputy.commands.end()) continue;
+    KnownCommand& command = known->second;
+    const CommandReport& report = listed->second.report;
+    if (command.deputy != deputy.id || listed->second.is_health_old) continue;
+    const bool is_down = report.pid == 0 && report.run_id != 0;
+    if (health.state == CommandState::kEnded && is_down && report.run_id == command.run_id &&
+        mode_ == Mode::kCommand) {
+      command.force_quit = true;
+    }
+    if (command.is_asked || command.is_mirrored) continue;
+    // Somebody stopped it: it is to stay so.
+    if (health.state == CommandState::kStopped && is_down) {
+      command.force_quit = true;
+      command.was_stopped = true;
+    }
+    // Whether it is to stay down or to start again its deputy knows and we do not: let it finish.
+    if (health.state != CommandState::kStopping) {
+      command.held_back_until_us = -1;
+    } else if (command.held_back_until_us == 0) {
+      command.held_back_until_us =
+          now_us + kHoldMarginUs +
+          static_cast<std::int64_t>(report.spec.stop_time_allowed_s * 1e6F);
+    }
+  }
+}
+
+void Sheriff::OnForeignOrders(const Orders& orders, std::int64_t now_us) {
+  if (orders.sheriff_id == id_ || orders.deputy_id.empty()) return;
+  if (sheriffs_us_.size() >= kMaxSheriffs && !sheriffs_us_.contains(orders.sheriff_id)) {
+    sheriffs_us_.erase(std::min_element(
+        sheriffs_us_.begin(), sheriffs_us_.end(), [](const auto& a, const auto& b) {
+          return a.second < b.second;
+        }));
+  }
+  sheriffs_us_[orders.sheriff_id] = now_us;
+  if (deputies_.size() >= kMaxDeputies && !deputies_.contains(orders.deputy_id)) return;
+  KnownDeputy& deputy = deputies_[orders.deputy_id];
+  deputy.id = orders.deputy_id;
+  if (deputy.orders_by != orders.sheriff_id) {
+    Note({.utime = orders.utime,
+          .kind = Change::Kind::kSheriff,
+          .deputy = deputy.id,
+          .command = {},
+          .from = deputy.orders_by,
+          .to = orders.sheriff_id,
+          .text = {}});
+  }
+  deputy.orders_by = orders.sheriff_id;
+  deputy.orders_us = now_us;
+  if (mode_ == Mode::kObserve) {
+    std::set<std::string> ordered;
+    for (const DesiredCommand& desired : orders.commands) {
+      if (!desired.spec.id.empty() && ordered.insert(desired.spec.id).second) {
+        Mirror(desired, deputy);
+      }
+    }
+    for (auto& [id, command] : commands_) {
+      if (command.deputy != deputy.id || ordered.contains(id)) continue;
+      command.is_mirrored = false;
+      command.is_removed = deputy.commands.contains(id);
+    }
+    TakeWhatTheReportLacks(deputy);
+  }
+  NoteChanges(now_us, orders.utime);
+}
+
+void Sheriff::Mirror(const DesiredCommand& desired, const KnownDeputy& deputy) {
+  if (commands_.size() >= kMaxCommands && !commands_.contains(desired.spec.id)) return;
+  const auto [entry, is_new] = commands_.try_emplace(desired.spec.id);
+  KnownCommand& command = entry->second;
+  if (is_new) command.deputy = deputy.id;
+  if (command.deputy != deputy.id) return;
+  if (!command.is_in_file) command.spec = desired.spec;
+  const auto listed = deputy.commands.find(desired.spec.id);
+  const bool is_up = listed != deputy.commands.end() && listed->second.report.pid != 0;
+  if (!desired.force_quit) command.was_stopped = false;
+  // An order to end what has ended already only keeps it so.
+  if (desired.force_quit && !command.force_quit) command.was_stopped = is_up;
+  command.run_id = desired.run_id;
+  command.force_quit = desired.force_quit;
+  command.is_mirrored = true;
+  command.is_removed = false;
+}
+
+bool Sheriff::HasTwoSenders(const KnownDeputy& deputy, std::int64_t now_us) {
+  return deputy.stamps_back >= 2 && now_us - deputy.stamp_back_us < kTwoSendersUs;
+}
+
+std::optional<OtherSheriff> Sheriff::ActiveOther(std::int64_t now_us) const {
+  std::optional<OtherSheriff> other;
+  const auto consider = [&](const std::string& id, std::int64_t age_us, bool was_heard) {
+    if (id.empty() || id == id_ || age_us > kOrdersActiveUs) return;
+    if (!other || age_us < other->age_us) {
+      other = {id, age_us, was_heard || (other && other->id == id && other->was_heard)};
+    }
+    if (other->id == id) other->was_heard = other->was_heard || was_heard;
+  };
+  for (const auto& [id, heard_us] : sheriffs_us_) consider(id, now_us - heard_us, true);
+  for (const auto& [id, deputy] : deputies_) {
+    if (!deputy.health || deputy.health->orders_age_us < 0) continue;
+    const std::int64_t age_us = deputy.health->orders_age_us + now_us - deputy.health_us;
+    consider(deputy.health->sheriff_id, age_us, false);
+  }
+  return other;
+}
+
+}  // namespace clearway::core::procman
