@@ -68,9 +68,8 @@ bool ProcmanPeer::AwaitDeputy(const std::string& deputy) {
 bool ProcmanPeer::AwaitRunning(const std::string& deputy,
                                const std::string& id,
                                std::int32_t run_id) {
-  return Await([&] {
-    return Command(deputy, id).pid != 0 && Command(deputy, id).run_id == run_id;
-  });
+  return Await(
+      [&] { return Command(deputy, id).pid != 0 && Command(deputy, id).run_id == run_id; });
 }
 
 bool ProcmanPeer::AwaitStopped(const std::string& deputy, const std::string& id) {
