@@ -78,7 +78,7 @@ std::vector<std::string> AllowRule::Validate() const {
   return problems;
 }
 
-AllowList::AllowList(std::vector<AllowRule> rules) {
+AllowList::AllowList(const std::vector<AllowRule>& rules) {
   for (const AllowRule& rule : rules) rules_.push_back(TakeApart(rule));
 }
 
@@ -101,6 +101,16 @@ AllowList::Rule AllowList::TakeApart(const AllowRule& rule) {
   return taken;
 }
 
+bool AllowList::IsVariableAllowed(const Rule& rule,
+                                  const std::string& name,
+                                  const std::string& value) {
+  const auto* const end = kAlwaysAllowed.end();
+  if (std::find(kAlwaysAllowed.begin(), end, name) != end) return true;
+  return std::any_of(rule.variables.begin(), rule.variables.end(), [&](const auto& pattern) {
+    return IsMatch(pattern.name, name) && IsMatch(pattern.value, value);
+  });
+}
+
 AllowList::Refusal AllowList::RefusalBy(const Rule& rule, const ExecLine& line) {
   const std::string of_program = " of " + Quoted(line.arguments[0]);
   const std::size_t num_given = line.arguments.size() - 1;
@@ -120,14 +130,10 @@ AllowList::Refusal AllowList::RefusalBy(const Rule& rule, const ExecLine& line) 
   }
   for (std::size_t i = 0; i < line.environment.size(); ++i) {
     const auto& [name, value] = line.environment[i];
-    const bool is_allowed =
-        std::find(kAlwaysAllowed.begin(), kAlwaysAllowed.end(), name) != kAlwaysAllowed.end() ||
-        std::any_of(rule.variables.begin(), rule.variables.end(), [&](const auto& pattern) {
-          return IsMatch(pattern.name, name) && IsMatch(pattern.value, value);
-        });
-    if (is_allowed) continue;
-    return {num_given + i,
-            "variable " + Quoted(name + "=" + value) + of_program + " is not allowed"};
+    if (IsVariableAllowed(rule, name, value)) continue;
+    std::string setting = name;
+    setting.append("=").append(value);
+    return {num_given + i, "variable " + Quoted(setting) + of_program + " is not allowed"};
   }
   return {};
 }

@@ -47,7 +47,7 @@ struct AllowRule {
 class AllowList {
  public:
   /// @pre the rules have been validated.
-  explicit AllowList(std::vector<AllowRule> rules);
+  explicit AllowList(const std::vector<AllowRule>& rules);
 
   /// Empty: allowed, since one rule lets the program, all arguments and all variables pass. Else
   /// why not, in one sentence that names the program, the argument or the variable; of several
@@ -75,6 +75,9 @@ class AllowList {
   };
 
   static Rule TakeApart(const AllowRule& rule);
+  static bool IsVariableAllowed(const Rule& rule,
+                                const std::string& name,
+                                const std::string& value);
   static Refusal RefusalBy(const Rule& rule, const ExecLine& line);
 
   std::vector<Rule> rules_;

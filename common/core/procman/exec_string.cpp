@@ -19,10 +19,10 @@ bool IsDigit(char character) {
   return character >= '0' && character <= '9';
 }
 
-// A variable in a word: [begin, end) with its dollar and braces.
+// A variable in a word.
 struct Mention {
   std::string name;
-  std::size_t end = 0;
+  std::size_t end = 0;  // Behind it and its brace.
 };
 
 class Expander {
@@ -30,7 +30,7 @@ class Expander {
   Expander(const ExecWord& word, const LookupVariable& lookup) : word_(word), lookup_(lookup) {}
 
   // Stops once the result is longer than `limit`.
-  std::string Expand(std::size_t limit) const {
+  [[nodiscard]] std::string Expand(std::size_t limit) const {
     std::string expanded;
     std::size_t at = 0;
     while (at < word_.text.size() && expanded.size() <= limit) {

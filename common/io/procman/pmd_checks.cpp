@@ -17,15 +17,15 @@ void CheckName(const PmdContent& content, const PmdReference& reference, PmdProb
   std::string expected;
   switch (reference.kind) {
     case PmdReference::Kind::kCommand:
-      if (content.command_lines.count(reference.name) > 0) return;
+      if (content.command_lines.contains(reference.name)) return;
       expected = "cmd " + Quoted(reference.name) + ": expected the id of a command of this file";
       break;
     case PmdReference::Kind::kGroup:
-      if (content.groups.count(reference.name) > 0) return;
+      if (content.groups.contains(reference.name)) return;
       expected = "group " + Quoted(reference.name) + ": expected the path of a group of this file";
       break;
     case PmdReference::Kind::kScript:
-      if (content.script_lines.count(reference.name) > 0) return;
+      if (content.script_lines.contains(reference.name)) return;
       expected = "run_script " + Quoted(reference.name) + ": expected a script of this file";
       break;
   }

@@ -156,10 +156,10 @@ class CommandParser {
 
   void CheckRequired() {
     const std::string command = "cmd " + Quoted(command_.spec.id);
-    if (given_.count("exec") == 0) {
+    if (!given_.contains("exec")) {
       cursor_.problems().Add(begin_, command + " without exec: expected exec = \"PROGRAM ...\";");
     }
-    if (given_.count("deputy") == 0) {
+    if (!given_.contains("deputy")) {
       cursor_.problems().Add(begin_, command + " without deputy: expected deputy = \"NAME\";");
     }
   }

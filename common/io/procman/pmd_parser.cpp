@@ -32,7 +32,7 @@ class FileParser {
   }
 
  private:
-  // A command or a group in `depth` groups.
+  // A command or a group in `depth` groups. Recursion ends at kMaxPmdGroupDepth.
   void ParseItem(const std::string& path, std::size_t depth, const char* expected) {
     if (cursor_.IsWord("cmd")) return ParsePmdCommand(cursor_, path, content_);
     if (cursor_.IsWord("group")) return ParseGroup(path, depth);
