@@ -49,7 +49,7 @@ TEST_F(DeputyTest, StartsStopsAndRestartsByOneOrderEach) {
   ASSERT_TRUE(peer_.AwaitStopped("d", "a"));
 
   EXPECT_EQ(peer_.Command("d", "a").exit_code, SIGINT);
-  EXPECT_EQ(peer_.HealthOf("d", "a").state, State::kStopped);
+  EXPECT_TRUE(peer_.AwaitState("d", "a", State::kStopped));
 }
 
 TEST_F(DeputyTest, AOneCharacterArgumentArrives) {
@@ -78,7 +78,7 @@ TEST_F(DeputyTest, EnvironmentAssignmentsReachTheChildAndVariablesAreExpanded) {
 TEST_F(DeputyTest, ChildrenHaveATerminalAndNoOtherDescriptors) {
   StartDeputyAndAwait("d");
 
-  peer_.Order("d", {Wanted("a", "sh -c 'test -t 1 && echo terminal; ls /proc/self/fd; echo end'")});
+  peer_.Order("d", {Wanted("a", "sh -c 'test -t 1 && echo terminal; ls -1 /proc/self/fd; echo end'")});
 
   ASSERT_TRUE(AwaitOutput("a", "end\n"));
   EXPECT_THAT(OutputOf("a"), HasSubstr("terminal\n0\n1\n2\n3\nend\n")) << "3 is ls's own";
