@@ -50,6 +50,8 @@ void AddDeputyOptions(CLI::App& app, DeputyOptions& options) {
   app.add_option("-i,--id", options.id, "Name of this deputy; without it the host's name")
       ->type_name("ID");
   app.add_option("-u,--lcm-url", options.lcm_url, "udpm://GROUP:PORT?ttl=N")->type_name("URL");
+  app.add_option("--channel-prefix", options.channel_prefix, "Put before every channel name")
+      ->type_name("TEXT");
   app.add_option("-l,--log", options.log_file, "The deputy's own messages go to this file")
       ->type_name("FILE");
   app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")

@@ -21,6 +21,7 @@ struct DeputyOptions {
   std::vector<std::string> overrides;
   std::string id;
   std::string lcm_url;
+  std::string channel_prefix;
   std::string log_level = "info";
   std::filesystem::path log_file;
   bool allow_any = false;

@@ -79,7 +79,7 @@ int Serve(const DeputyOptions& options, const config::LoadResult<DeputyFile>& fi
   ConfigDigest digest(file.root.deputy.graph_config);
   settings.config_digest = [&digest] { return digest.Get(); };
   const process::BusConfig bus = BusOf(options, file);
-  process::LiveRuntime runtime({bus, bus}, "", process::MissingNetwork::kWait);
+  process::LiveRuntime runtime({bus, bus}, options.channel_prefix, process::MissingNetwork::kWait);
   std::optional<core::procman::AllowList> allowed;
   if (!options.allow_any) allowed.emplace(file.root.allow);
   ChildSet children(runtime, std::move(allowed), MarkOf(settings));
