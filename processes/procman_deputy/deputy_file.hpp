@@ -58,8 +58,9 @@ struct DeputyConfig {
     visitor.Text("id", self.id, "Name of the deputy, unique on its bus. Empty: the host's name.");
     visitor.Text("graph_config",
                  self.graph_config,
-                 "The graph's configuration on this host: its digest is published, so that hosts "
-                 "that differ are found before anything is started. Empty: none.");
+                 "The graph's configuration on this host: ${CLEARWAY_CONFIG} in command lines. Its "
+                 "digest is published, so that hosts that differ are found before anything is "
+                 "started. Empty: none.");
     visitor.Text("state_folder",
                  self.state_folder,
                  "Where the last orders are kept, so that the next life carries on. Empty: the one "

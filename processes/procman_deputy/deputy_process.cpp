@@ -319,6 +319,12 @@ void DeputyProcess::PublishState() {
   }
 }
 
+void DeputyProcess::SetTrouble(const std::string& text) {
+  trouble_ = text;
+  Say(text);
+  AfterEvent(true);
+}
+
 void DeputyProcess::Say(const std::string& text) {
   process::LogWarning(text);
   output_.Add("", text + '\n', runtime_.MonotonicUs());

@@ -68,6 +68,8 @@ class DeputyProcess final : private Machine::Listener, private core::procman::Co
   [[nodiscard]] core::procman::DeputyReport Report() const;
   [[nodiscard]] core::procman::DeputyHealth Health() const;
   [[nodiscard]] bool has_orders() const { return deputy_.has_orders(); }
+  /// Something about the deputy itself that people must know; stands in its health from now on.
+  void SetTrouble(const std::string& text);
   [[nodiscard]] bool is_established() const { return is_established_; }
 
  private:

@@ -2,6 +2,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <sys/file.h>
@@ -16,6 +17,7 @@
 #include "processes/procman_deputy/config_digest.hpp"
 #include "processes/procman_deputy/deputy_options.hpp"
 #include "processes/procman_deputy/deputy_process.hpp"
+#include "processes/procman_deputy/self_start.hpp"
 
 namespace clearway {
 namespace {
@@ -73,9 +75,17 @@ void KillLeftovers(ChildSet& children) {
                       " processes of an earlier life of this deputy were still there: killed");
 }
 
+// What command lines call ${CLEARWAY_CONFIG}, where the host's file says what that is.
+void NameGraphConfig(const DeputyConfig& config) {
+  if (!config.graph_config.empty()) {
+    setenv("CLEARWAY_CONFIG", std::filesystem::absolute(config.graph_config).c_str(), 1);
+  }
+}
+
 int Serve(const DeputyOptions& options, const config::LoadResult<DeputyFile>& file) {
   DeputySettings settings = SettingsOf(options, file.root.deputy);
   if (!settings.orders_file.empty()) LockFolder(settings.orders_file.parent_path());
+  NameGraphConfig(file.root.deputy);
   ConfigDigest digest(file.root.deputy.graph_config);
   settings.config_digest = [&digest] { return digest.Get(); };
   const process::BusConfig bus = BusOf(options, file);
@@ -89,6 +99,7 @@ int Serve(const DeputyOptions& options, const config::LoadResult<DeputyFile>& fi
     runtime.Stop();
   });
   if (!settings.orders_file.empty()) deputy.BeforeFirstStart([&] { KillLeftovers(children); });
+  const SelfStart self_start(runtime, deputy, file.root.deputy.by_itself);
   runtime.OnSignal([&](int signal) {
     if (signal == SIGCHLD) {
       children.Reap();
