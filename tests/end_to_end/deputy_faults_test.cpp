@@ -259,6 +259,46 @@ TEST_F(DeputyFaultsTest, AHostFileWithMistakesIsRefusedWithAllOfThem) {
   EXPECT_THAT(deputy.LastWords(), HasSubstr("arguments"));
 }
 
+TEST_F(DeputyFaultsTest, WithoutASheriffItRunsItsScriptForItsOwnCommandsAndASheriffTakesOver) {
+  const std::filesystem::path pmd = folder_.path() / "own.pmd";
+  std::ofstream(pmd) << R"(cmd "mine" { exec = "sleep 7401"; deputy = "d"; }
+                           cmd "other" { exec = "sleep 7402"; deputy = "elsewhere"; }
+                           script "up" { start everything wait "running"; })";
+  StartDeputyAndAwait("d",
+                      {"--set",
+                       "deputy.by_itself.deployment=" + pmd.string(),
+                       "--set",
+                       "deputy.by_itself.script=up",
+                       "--set",
+                       "deputy.by_itself.after_ms=700"});
+
+  ASSERT_TRUE(peer_.Await([&] { return peer_.Command("d", "mine").pid != 0; }));
+  const core::procman::CommandReport mine = peer_.Command("d", "mine");
+  EXPECT_EQ(PidWith("sleep 7402"), 0);
+  EXPECT_TRUE(peer_.Await([&] { return peer_.health["d"].sheriff_id.starts_with("d:by-itself:"); }))
+      << peer_.health["d"].sheriff_id;
+  core::procman::DesiredCommand wanted = Wanted("mine", "sleep 7401", mine.run_id);
+  peer_.Order("d", {wanted});
+
+  ASSERT_TRUE(peer_.Await([&] { return peer_.health["d"].sheriff_id == "test:1:1"; }));
+  EXPECT_EQ(peer_.Command("d", "mine").pid, mine.pid) << "nothing was restarted";
+}
+
+TEST_F(DeputyFaultsTest, AScriptThatIsNotThereIsToldAndNothingElseSuffers) {
+  StartDeputyAndAwait("d",
+                      {"--set",
+                       "deputy.by_itself.deployment=/nowhere.pmd",
+                       "--set",
+                       "deputy.by_itself.script=up",
+                       "--set",
+                       "deputy.by_itself.after_ms=600"});
+
+  EXPECT_TRUE(peer_.Await(
+      [&] { return peer_.health["d"].text.find("/nowhere.pmd") != std::string::npos; }));
+  peer_.Order("d", {Wanted("a", "sleep 50")});
+  EXPECT_TRUE(peer_.AwaitRunning("d", "a", 1));
+}
+
 // This test has a network of its own: its multicast route goes and comes.
 TEST_F(DeputyFaultsTest, StartedBeforeAnyNetworkItCarriesOnWithItsOrdersAndIsThereWhenItComes) {
   if (geteuid() != 0) GTEST_SKIP() << "only root changes routes";
