@@ -141,6 +141,8 @@ ProcessTable ProcessTable::Read() {
 ProcessTable::ProcessTable(std::vector<ProcessEntry> entries) : entries_(std::move(entries)) {
   std::sort(
       entries_.begin(), entries_.end(), [](const auto& a, const auto& b) { return a.pid < b.pid; });
+  const auto same_pid = [](const auto& a, const auto& b) { return a.pid == b.pid; };
+  entries_.erase(std::unique(entries_.begin(), entries_.end(), same_pid), entries_.end());
   by_parent_.reserve(entries_.size());
   for (std::size_t i = 0; i < entries_.size(); ++i) by_parent_.emplace_back(entries_[i].ppid, i);
   std::sort(by_parent_.begin(), by_parent_.end());
@@ -157,8 +159,6 @@ const ProcessEntry* ProcessTable::Find(pid_t pid) const {
 std::vector<ProcessEntry> ProcessTable::Descendants(pid_t pid) const {
   std::vector<ProcessEntry> found;
   std::vector<pid_t> parents{pid};
-  // A pass that saw a pid twice in its life may hold a circle.
-  std::vector<bool> is_known(entries_.size(), false);
   while (!parents.empty()) {
     const pid_t parent = parents.back();
     parents.pop_back();
@@ -167,8 +167,9 @@ std::vector<ProcessEntry> ProcessTable::Descendants(pid_t pid) const {
          child != by_parent_.end() && child->first == parent;
          ++child) {
       const ProcessEntry& entry = entries_[child->second];
-      if (is_known[child->second] || entry.pid == pid) continue;
-      is_known[child->second] = true;
+      // Each has one parent, so that a circle, which pids used again within the pass could make,
+      // comes back here.
+      if (entry.pid == pid) continue;
       found.push_back(entry);
       parents.push_back(entry.pid);
     }

@@ -43,6 +43,7 @@ class ProcessTable {
   [[nodiscard]] static ProcessTable Read();
 
   ProcessTable() = default;
+  /// In any order; of several with one pid, one counts.
   explicit ProcessTable(std::vector<ProcessEntry> entries);
 
   /// By ascending pid.

@@ -118,6 +118,13 @@ TEST(ProcessTableTest, DescendantsAreAllGenerationsOfOneProcess) {
   EXPECT_TRUE(ProcessTable().Descendants(1).empty());
 }
 
+TEST(ProcessTableTest, APidIsThereOnce) {
+  const ProcessTable table({Entry(10, 1), Entry(10, 11), Entry(11, 10)});
+
+  EXPECT_EQ(PidsOf(table.entries()), (Pids{10, 11}));
+  EXPECT_LE(table.Descendants(1).size(), 2U);
+}
+
 TEST(ProcessTableTest, ACircleIsNoTrap) {
   const ProcessTable table({Entry(10, 12), Entry(11, 10), Entry(12, 11), Entry(20, 20)});
 
