@@ -44,7 +44,7 @@ void Sheriff::Load(Deployment deployment, std::int64_t now_us) {
            });
   });
   for (auto& [id, deputy] : deputies_) {
-    for (const auto& [command, reported] : deputy.commands) TakeOver(deputy, reported);
+    for (const auto& [command, reported] : deputy.commands) TakeOver(deputy, reported, now_us);
     RefineByHealth(deputy, now_us);
   }
   NoteChanges(now_us);
@@ -91,11 +91,9 @@ int Sheriff::Run(const Target& target, Wish wish, std::int64_t now_us, bool forc
   return Act(target, Extent::kStart, now_us, [&](KnownCommand& command) {
     command.is_forced = force;
     command.is_removed = false;
-    if (IsHeard(command.deputy, now_us)) {
-      Resolve(command, wish);
-    } else {
-      command.waits_to_restart = wish == Wish::kRestart;
-    }
+    // What seems to run may have ended since the last report: then the next one tells.
+    const bool is_done = IsHeard(command.deputy, now_us) && Resolve(command, wish);
+    if (!is_done) command.waits_to_restart = wish == Wish::kRestart;
   });
 }
 
@@ -125,8 +123,8 @@ int Sheriff::Remove(const Target& target, std::int64_t now_us) {
   return count;
 }
 
-// @pre the command's deputy has reported lately.
-void Sheriff::Resolve(KnownCommand& command, Wish wish) {
+// False: nothing is to be done, since it runs. @pre the command's deputy has reported.
+bool Sheriff::Resolve(KnownCommand& command, Wish wish) {
   const KnownDeputy& deputy = *Find(command.deputy);
   const auto listed = deputy.commands.find(command.spec.id);
   const CommandReport none;
@@ -141,13 +139,14 @@ void Sheriff::Resolve(KnownCommand& command, Wish wish) {
   command.was_stopped = false;
   command.stop_needs_time = false;
   if (wish == Wish::kStart && is_wanted) {
-    if (is_on_its_way) return;
-    if (report.pid != 0 && !is_ending) return;
+    if (is_on_its_way) return true;
+    if (report.pid != 0 && !is_ending) return false;
   }
   // Neither the id that its deputy told nor one that may be under way to it.
   const std::int32_t ordered = command.run_id;
   command.run_id = NextRunId(report.run_id);
   if (command.run_id == ordered && is_on_its_way) command.run_id = NextRunId(ordered);
+  return true;
 }
 
 void Sheriff::MarkChanged(const KnownCommand& command) {

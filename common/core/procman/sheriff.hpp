@@ -113,11 +113,11 @@ class Sheriff {
           std::int64_t now_us,
           const std::function<void(KnownCommand&)>& action);
   int Run(const Target& target, Wish wish, std::int64_t now_us, bool force);
-  void Resolve(KnownCommand& command, Wish wish);
+  bool Resolve(KnownCommand& command, Wish wish);
   void MarkChanged(const KnownCommand& command);
 
   // sheriff_intake.cpp
-  void TakeOver(KnownDeputy& deputy, const ReportedCommand& reported);
+  void TakeOver(const KnownDeputy& deputy, const ReportedCommand& reported, std::int64_t now_us);
   void TakeWhatTheReportLacks(KnownDeputy& deputy);
   void RefineByHealth(KnownDeputy& deputy, std::int64_t now_us);
   void Mirror(const DesiredCommand& desired, const KnownDeputy& deputy);

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "common/core/procman/run_id.hpp"
 #include "common/core/procman/sheriff.hpp"
 
 namespace clearway::core::procman {
@@ -15,6 +16,8 @@ constexpr std::int64_t kReorderedUs = 2'000'000;
 // Two such steps within this: there are two senders.
 constexpr std::int64_t kTwoSendersUs = 10'000'000;
 constexpr std::int64_t kOrdersActiveUs = 3'000'000;
+// The longest pause of the reference deputy between two starts is half of this.
+constexpr std::int64_t kReferencePauseUs = 2'000'000;
 constexpr std::int64_t kHoldMarginUs = 1'000'000;
 // Ids come from outside: what claims more is not believed.
 constexpr std::size_t kMaxDeputies = 1000;
@@ -79,7 +82,7 @@ void Sheriff::OnReport(const DeputyReport& report, std::int64_t now_us) {
   deputy.report = report;
   deputy.report->commands.clear();
   deputy.heard_us = now_us;
-  for (const auto& [id, reported] : deputy.commands) TakeOver(deputy, reported);
+  for (const auto& [id, reported] : deputy.commands) TakeOver(deputy, reported, now_us);
   for (auto& [id, command] : commands_) {
     if (command.deputy == deputy.id && command.waits_to_restart) {
       Resolve(command, *command.waits_to_restart ? Wish::kRestart : Wish::kStart);
@@ -92,7 +95,9 @@ void Sheriff::OnReport(const DeputyReport& report, std::int64_t now_us) {
 }
 
 // Nothing that runs is restarted: what nobody asked us for goes on as it is.
-void Sheriff::TakeOver(KnownDeputy& deputy, const ReportedCommand& reported) {
+void Sheriff::TakeOver(const KnownDeputy& deputy,
+                       const ReportedCommand& reported,
+                       std::int64_t now_us) {
   const CommandReport& report = reported.report;
   if (commands_.size() >= kMaxCommands && !commands_.contains(report.spec.id)) return;
   const auto [entry, is_new] = commands_.try_emplace(report.spec.id);
@@ -119,12 +124,20 @@ void Sheriff::TakeOver(KnownDeputy& deputy, const ReportedCommand& reported) {
     return;
   }
   if (command.run_id == 0) command.run_id = report.run_id;
-  // Ended by itself: a deputy that is started anew is not to run it again. Where the deputy tells
-  // its health, that decides: it may be about to start it again.
-  if (report.pid == 0 && report.run_id == command.run_id && report.run_id != 0 &&
-      !command.spec.auto_respawn && !deputy.health) {
-    command.force_quit = true;
+  if (report.pid != 0 || report.run_id != command.run_id || report.run_id == 0) return;
+  // We ended it there ourselves, since it ran elsewhere too: the run that was asked for is to come.
+  if (command.is_held) {
+    command.run_id = NextRunId(command.run_id);
+    return;
   }
+  // A deputy that is started anew is not to run again what ended by itself, nor what we found
+  // stopped. Where the deputy tells its health, that decides: it may be about to start it again;
+  // the reference's does so within a second.
+  const bool is_down_for_good =
+      command.spec.auto_respawn
+          ? !command.is_asked && now_us - reported.since_us > kReferencePauseUs
+          : true;
+  if (!deputy.health && is_down_for_good) command.force_quit = true;
 }
 
 void Sheriff::TakeWhatTheReportLacks(KnownDeputy& deputy) {

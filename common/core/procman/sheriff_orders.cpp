@@ -8,6 +8,8 @@ namespace clearway::core::procman {
 namespace {
 
 constexpr std::int64_t kOrdersPeriodUs = 1'000'000;
+// A report that comes this long after orders was made in their knowledge, if they arrived at all.
+constexpr std::int64_t kOrdersArriveUs = 200'000;
 
 }  // namespace
 
@@ -24,6 +26,14 @@ std::vector<Orders> Sheriff::OrdersDue(std::int64_t now_us, std::int64_t utime) 
     deputy.is_changed = false;
     deputy.sent_us = now_us;
     deputy.sent = wanted;
+    for (const DesiredCommand& command : wanted) {
+      if (!command.force_quit && command.run_id != 0) {
+        deputy.told_to_run_us[command.spec.id] = now_us;
+      }
+    }
+    for (auto& [command_id, command] : commands_) {
+      if (command.deputy == id) command.is_held = Obstacle(command, now_us) != nullptr;
+    }
     last_utime_ = std::max(utime, last_utime_ + 1);
     due.push_back(
         {.utime = last_utime_, .deputy_id = id, .sheriff_id = id_, .commands = std::move(wanted)});
@@ -81,10 +91,15 @@ const KnownDeputy* Sheriff::Obstacle(const KnownCommand& command, std::int64_t n
     }
   }
   for (const auto& [id, deputy] : deputies_) {
+    if (id == command.deputy) continue;
     const auto listed = deputy.commands.find(command.spec.id);
-    if (id == command.deputy || listed == deputy.commands.end()) continue;
-    const CommandReport& report = listed->second.report;
-    const bool may_run = report.pid != 0 || report.spec.auto_respawn;
+    const auto told = deputy.told_to_run_us.find(command.spec.id);
+    // Orders may have started it there since the report that we know.
+    const bool was_told =
+        told != deputy.told_to_run_us.end() && deputy.heard_us < told->second + kOrdersArriveUs;
+    if (listed == deputy.commands.end() && !was_told) continue;
+    const bool may_run =
+        was_told || listed->second.report.pid != 0 || listed->second.report.spec.auto_respawn;
     if (!IsHeard(id, now_us) && (!may_run || command.is_forced)) continue;
     return &deputy;
   }

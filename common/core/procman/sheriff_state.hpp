@@ -41,7 +41,8 @@ struct KnownDeputy {
   bool is_changed = false;     ///< Orders are due at once.
   std::optional<std::int64_t> sent_us;
   std::vector<DesiredCommand> sent;
-  bool was_heard = false;  ///< For the history.
+  std::map<std::string, std::int64_t> told_to_run_us;  ///< Commands, and when orders said so last.
+  bool was_heard = false;                              ///< For the history.
 };
 
 struct KnownCommand {
@@ -60,6 +61,7 @@ struct KnownCommand {
   std::optional<bool> waits_to_restart =
       std::nullopt;  ///< Asked while its deputy was not heard; false: start.
   std::int64_t asked_us = 0;
+  bool is_held = false;          ///< Its last order was to stay down until it has ended elsewhere.
   bool stop_needs_time = false;  ///< When it was asked to stop it was between two starts, maybe.
   std::int64_t held_back_until_us = 0;  ///< It was being stopped when we came.
 
