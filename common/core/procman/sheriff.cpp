@@ -72,6 +72,7 @@ int Sheriff::Act(const Target& target,
     command.is_asked = true;
     command.asked_us = now_us;
     command.held_back_until_us = -1;
+    command.is_held = false;
     action(command);
     MarkChanged(command);
   }

@@ -124,9 +124,14 @@ void Sheriff::TakeOver(const KnownDeputy& deputy,
     return;
   }
   if (command.run_id == 0) command.run_id = report.run_id;
-  if (report.pid != 0 || report.run_id != command.run_id || report.run_id == 0) return;
+  if (report.run_id != command.run_id || report.run_id == 0) return;
+  if (report.pid != 0) {
+    command.is_held = false;
+    return;
+  }
   // We ended it there ourselves, since it ran elsewhere too: the run that was asked for is to come.
   if (command.is_held) {
+    command.is_held = false;
     command.run_id = NextRunId(command.run_id);
     return;
   }

@@ -32,7 +32,7 @@ std::vector<Orders> Sheriff::OrdersDue(std::int64_t now_us, std::int64_t utime) 
       }
     }
     for (auto& [command_id, command] : commands_) {
-      if (command.deputy == id) command.is_held = Obstacle(command, now_us) != nullptr;
+      if (command.deputy == id && Obstacle(command, now_us) != nullptr) command.is_held = true;
     }
     last_utime_ = std::max(utime, last_utime_ + 1);
     due.push_back(
@@ -60,15 +60,19 @@ std::vector<DesiredCommand> Sheriff::WantedOf(const KnownDeputy& deputy,
       // It is to run elsewhere. Until somebody asks for that it stays as it is; then it is left out
       // of these orders, which ends it here.
       if (report != nullptr && !command.is_asked) {
-        wanted.push_back({.spec = report->spec, .run_id = report->run_id, .force_quit = false});
+        wanted.push_back({.spec = report->spec,
+                          .run_id = report->run_id,
+                          .force_quit = report->pid == 0 && report->run_id == 0});
       }
       continue;
     }
     DesiredCommand desired{
         .spec = command.spec, .run_id = command.run_id, .force_quit = command.force_quit};
     const std::int32_t reported_run_id = report == nullptr ? 0 : report->run_id;
-    // To a deputy 0 is a run id like others for a command that does not run: it would start.
+    // To a deputy 0 is a run id like others for a command that does not run: it would start what
+    // has run meanwhile.
     if (desired.run_id == 0) desired.run_id = reported_run_id;
+    if (desired.run_id == 0 && (report == nullptr || report->pid == 0)) desired.force_quit = true;
     // Not the new run id: a deputy takes it silently from an order to stop, and then never runs it.
     if (Obstacle(command, now_us) != nullptr) {
       desired.run_id = reported_run_id;

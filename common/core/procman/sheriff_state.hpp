@@ -61,7 +61,8 @@ struct KnownCommand {
   std::optional<bool> waits_to_restart =
       std::nullopt;  ///< Asked while its deputy was not heard; false: start.
   std::int64_t asked_us = 0;
-  bool is_held = false;          ///< Its last order was to stay down until it has ended elsewhere.
+  /// It was ordered to stay down until it has ended elsewhere, which may have ended it here too.
+  bool is_held = false;
   bool stop_needs_time = false;  ///< When it was asked to stop it was between two starts, maybe.
   std::int64_t held_back_until_us = 0;  ///< It was being stopped when we came.
 

@@ -169,7 +169,7 @@ TEST_P(SheriffPropertiesTest, NeverRunsTwoCopiesWhileCommandsMove) {
   EXPECT_EQ(most_copies, 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, SheriffPropertiesTest, testing::Range(1U, 3001U));
+INSTANTIATE_TEST_SUITE_P(Seeds, SheriffPropertiesTest, testing::Range(1U, 41U));
 
 }  // namespace
 }  // namespace clearway::core::procman
