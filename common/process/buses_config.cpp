@@ -60,6 +60,7 @@ BusConfig BusFromUrl(const std::string& url, BusConfig defaults) {
   const std::size_t question = std::min(url.find('?'), url.size());
   std::string address = url.substr(0, question);
   if (address == kScheme) address = BusConfig{}.url;
+  if (address.starts_with("udpm://:")) address.insert(kScheme.size(), "239.255.76.67");
   if (address.find(':', kScheme.size()) == std::string::npos) address += ":7667";
   bus.url = address;
   for (std::size_t begin = question + 1; begin < url.size();) {

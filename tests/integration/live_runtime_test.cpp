@@ -251,5 +251,78 @@ TEST(LiveRuntimeTest, WithoutAMulticastRouteTheErrorSaysWhatToDo) {
   EXPECT_THAT(error, testing::HasSubstr("ip route add 224.0.0.0/4 dev lo"));
 }
 
+TEST(LiveRuntimeTest, AWatchedDescriptorIsHandledUntilItIsUnwatched) {
+  LiveRuntime runtime(TestBuses(17112), "");
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  int calls = 0;
+  runtime.WatchDescriptor(ends[0], [&] {
+    char byte = 0;
+    EXPECT_EQ(read(ends[0], &byte, 1), 1);
+    if (++calls == 2) {
+      runtime.UnwatchDescriptor(ends[0]);
+      runtime.After(20'000, [&] { runtime.Stop(); });
+    }
+  });
+
+  ASSERT_EQ(write(ends[1], "abc", 3), 3);
+  runtime.RunFor(kDeadline_us);
+
+  EXPECT_EQ(calls, 2) << "the third byte was nobody's any more";
+  close(ends[0]);
+  close(ends[1]);
+}
+
+TEST(LiveRuntimeTest, AHungUpDescriptorIsHandled) {
+  LiveRuntime runtime(TestBuses(17113), "");
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  bool ended = false;
+  runtime.WatchDescriptor(ends[0], [&] {
+    ended = true;
+    runtime.UnwatchDescriptor(ends[0]);
+    runtime.Stop();
+  });
+
+  close(ends[1]);
+  runtime.RunFor(kDeadline_us);
+
+  EXPECT_TRUE(ended);
+  close(ends[0]);
+}
+
+TEST(LiveRuntimeTest, SignalsGoToWhoAskedForThemAndDoNotEndTheRun) {
+  LiveRuntime runtime(TestBuses(17114), "");
+  std::vector<int> signals;
+  runtime.OnSignal([&](int signal) {
+    signals.push_back(signal);
+    if (signals.size() == 3) runtime.Stop();
+  });
+  runtime.After(1000, [] { raise(SIGTERM); });
+  runtime.After(20'000, [] { raise(SIGCHLD); });
+  runtime.After(40'000, [] { raise(SIGHUP); });
+
+  runtime.RunFor(kDeadline_us);
+
+  EXPECT_EQ(signals, (std::vector<int>{SIGTERM, SIGCHLD, SIGHUP}));
+}
+
+TEST(LiveRuntimeTest, AnEndedChildOrANewWindowSizeEndsNoRun) {
+  LiveRuntime runtime(TestBuses(17115), "");
+  bool is_over = false;
+  runtime.After(1000, [] {
+    raise(SIGCHLD);
+    raise(SIGWINCH);
+  });
+  runtime.After(50'000, [&] {
+    is_over = true;
+    runtime.Stop();
+  });
+
+  runtime.RunFor(kDeadline_us);
+
+  EXPECT_TRUE(is_over);
+}
+
 }  // namespace
 }  // namespace clearway::process

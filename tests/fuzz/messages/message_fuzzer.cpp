@@ -8,6 +8,8 @@
 
 #include "common/core/geometry/pose_buffer.hpp"
 #include "common/core/mapping/map_builder.hpp"
+#include "common/core/procman/deputy.hpp"
+#include "common/core/procman/sheriff.hpp"
 #include "common/messages/channels.hpp"
 #include "common/messages/encoding.hpp"
 #include "common/messages/lidar_points.hpp"
@@ -15,6 +17,7 @@
 #include "common/messages/obstacle_points.hpp"
 #include "common/messages/odometry.hpp"
 #include "common/messages/pose.hpp"
+#include "common/messages/procman.hpp"
 
 namespace clearway {
 namespace {
@@ -30,6 +33,21 @@ void RequireEqualArrays(const core::PointCloud& cloud) {
   Require(cloud.intensity.size() == points && cloud.tag.size() == points);
   Require(cloud.time_offset_us.size() == points);
 }
+
+// Starts everything, and nothing ever ends.
+class NoCommands : public core::procman::CommandHost {
+ public:
+  core::procman::StartOutcome Start(const core::procman::CommandSpec& spec) override {
+    core::procman::StartOutcome outcome;
+    if (spec.exec.size() % 2 == 0) outcome.pid = ++last_pid_;
+    return outcome;
+  }
+  void Signal(std::int32_t, int) override {}
+  void Note(const std::string&, const std::string&) override {}
+
+ private:
+  std::int32_t last_pid_ = 0;
+};
 
 template <typename Message>
 void Use(const Message&) {}
@@ -83,6 +101,32 @@ void Use(const local_map_t& message) {
   }
 }
 
+void Use(const procman_lcm::orders_t& message) {
+  const core::procman::Orders orders = messages::FromLcm(message);
+  Require(messages::FromLcm(messages::ToLcm(orders)).commands.size() == orders.commands.size());
+  NoCommands host;
+  core::procman::Deputy deputy(orders.deputy_id, {}, {}, host);
+  deputy.Take(orders, 0);
+  deputy.Tick(1'000'000'000);
+  (void)deputy.Health(1'000'000'000);
+}
+
+void Use(const procman_lcm::deputy_info_t& message) {
+  core::procman::Sheriff sheriff("s", core::procman::Sheriff::Mode::kCommand);
+  sheriff.OnReport(messages::FromLcm(message), 0);
+  (void)sheriff.Look(5'000'000);
+  (void)sheriff.OrdersDue(5'000'000, 1);
+}
+
+void Use(const deputy_health_t& message) {
+  messages::HealthAssembler assembler;
+  const auto health = assembler.Add(message);
+  if (!health) return;
+  core::procman::Sheriff sheriff("s", core::procman::Sheriff::Mode::kObserve);
+  sheriff.OnHealth(*health, message.utime, 0);
+  (void)sheriff.Look(5'000'000);
+}
+
 // A decoded message can travel again, and is no longer then (its strings end at a NUL).
 template <typename Message>
 void Take(std::span<const std::byte> bytes) {
@@ -95,7 +139,7 @@ void Take(std::span<const std::byte> bytes) {
 }
 
 using Taker = void (*)(std::span<const std::byte>);
-constexpr std::array<Taker, 22> kTypes = {Take<lidar_points_t>,
+constexpr std::array<Taker, 23> kTypes = {Take<lidar_points_t>,
                                           Take<odometry_t>,
                                           Take<removed_points_t>,
                                           Take<drive_permit_t>,
@@ -116,7 +160,8 @@ constexpr std::array<Taker, 22> kTypes = {Take<lidar_points_t>,
                                           Take<procman_lcm::deputy_info_t>,
                                           Take<procman_lcm::orders_t>,
                                           Take<procman_lcm::output_t>,
-                                          Take<procman_lcm::discovery_t>};
+                                          Take<procman_lcm::discovery_t>,
+                                          Take<deputy_health_t>};
 
 }  // namespace
 }  // namespace clearway
