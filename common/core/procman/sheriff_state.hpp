@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -12,6 +13,10 @@
 
 /// What a Sheriff remembers. Times are of this host's monotonic clock [us].
 namespace clearway::core::procman {
+
+/// Ids come from outside: what claims more is not believed.
+inline constexpr std::size_t kMaxDeputies = 1000;
+inline constexpr std::size_t kMaxCommands = 10000;
 
 /// One command in the last report of one deputy, and what its reports before that add.
 struct ReportedCommand {

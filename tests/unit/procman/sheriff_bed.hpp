@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/core/procman/sheriff.hpp"
+#include "tests/support/memory_deputy.hpp"
 #include "tests/support/reference_deputy.hpp"
 
 namespace clearway::test {
@@ -47,8 +48,8 @@ inline core::procman::Target TheGroup(const std::string& path) {
   return {core::procman::Target::Kind::kGroup, path};
 }
 
-/// Sheriffs and reference deputies with a network between them that may lose messages, in steps of
-/// 10 ms. Starts at a time that is no host's: only differences matter.
+/// Sheriffs and deputies, the reference's and our own, with a network between them that may lose
+/// messages, in steps of 10 ms. Starts at a time that is no host's: only differences matter.
 class SheriffBed {
  public:
   using Sheriff = core::procman::Sheriff;
@@ -59,10 +60,16 @@ class SheriffBed {
     for (const std::string& id : deputies) deputies_.emplace(id, ReferenceDeputy(id));
   }
 
+  /// Adds one of clearway's own deputies.
+  MemoryDeputy& AddOwn(const std::string& id) {
+    return *own_.emplace(id, std::make_unique<MemoryDeputy>(id)).first->second;
+  }
+
   /// @return the sheriff, which lives as long as the bed.
   Sheriff& AddSheriff(const std::string& id, Sheriff::Mode mode = Sheriff::Mode::kCommand) {
     sheriffs_.push_back(std::make_unique<Sheriff>(id, mode));
     for (auto& [name, deputy] : deputies_) pending_reports_.insert(name);
+    for (auto& [name, deputy] : own_) pending_reports_.insert(name);
     return *sheriffs_.back();
   }
   void RemoveSheriff(const Sheriff& sheriff) {
@@ -79,12 +86,15 @@ class SheriffBed {
   std::function<bool()> loses_reports = [] { return false; };
   /// Deputies that nothing reaches and nothing leaves.
   std::set<std::string> cut_off;
+  /// Whether our own deputies send PM_HEALTH before PM_INFO.
+  bool health_first = false;
   /// Called after each step.
   std::function<void()> check = [] {};
 
   void Step() {
     now_us_ += kStepUs;
     for (auto& [id, deputy] : deputies_) deputy.Tick(now_us_);
+    for (auto& [id, deputy] : own_) deputy->Tick(now_us_);
     SendReports();
     for (auto& sheriff : sheriffs_) SendOrders(*sheriff);
     check();
@@ -125,19 +135,34 @@ class SheriffBed {
         if (!loses_reports()) sheriff->OnReport(deputy.Report(kEpoch + now_us_), now_us_);
       }
     }
+    for (auto& [id, deputy] : own_) {
+      const bool is_due = deputy->IsReportDue(now_us_) || pending_reports_.erase(id) != 0;
+      if (!is_due || cut_off.contains(id)) continue;
+      const std::int64_t utime = kEpoch + now_us_;
+      for (auto& sheriff : sheriffs_) {
+        if (health_first && !loses_reports()) {
+          sheriff->OnHealth(deputy->Health(now_us_), utime, now_us_);
+        }
+        if (!loses_reports()) sheriff->OnReport(deputy->Report(utime), now_us_);
+        if (!health_first && !loses_reports()) {
+          sheriff->OnHealth(deputy->Health(now_us_), utime, now_us_);
+        }
+      }
+    }
   }
 
   void SendOrders(Sheriff& sheriff) {
     for (const core::procman::Orders& orders : sheriff.OrdersDue(now_us_, kEpoch + now_us_)) {
       orders_.push_back(orders);
       for (auto& other : sheriffs_) other->OnForeignOrders(orders, now_us_);
-      const auto to = deputies_.find(orders.deputy_id);
-      if (to == deputies_.end() || cut_off.contains(orders.deputy_id) || loses_orders()) continue;
-      to->second.TakeOrders(orders, now_us_, kEpoch + now_us_);
+      if (cut_off.contains(orders.deputy_id) || loses_orders()) continue;
+      for (auto& [id, deputy] : deputies_) deputy.TakeOrders(orders, now_us_, kEpoch + now_us_);
+      for (auto& [id, deputy] : own_) deputy->TakeOrders(orders, now_us_);
     }
   }
 
   std::map<std::string, ReferenceDeputy> deputies_;
+  std::map<std::string, std::unique_ptr<MemoryDeputy>> own_;
   std::vector<std::unique_ptr<Sheriff>> sheriffs_;
   std::set<std::string> pending_reports_;  // A new sheriff asked for them.
   std::vector<core::procman::Orders> orders_;
