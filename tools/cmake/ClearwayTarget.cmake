@@ -43,6 +43,26 @@ function(clearway_program name)
 endfunction()
 add_custom_target(programs)
 
+# What nearly every test includes, compiled once; preset dev does without, so that no test leans on
+# what others include. Tests themselves are not optimised: what they test is.
+function(clearway_test_options name)
+  # One set of flags for all: some libraries bring -pthread along, which a header's must match.
+  set(flags -pthread $<$<CONFIG:Release,RelWithDebInfo>:-O1>)
+  target_compile_options(${name} PRIVATE ${flags})
+  if(NOT CLEARWAY_TEST_PCH)
+    return()
+  endif()
+  if(NOT TARGET clearway_test_pch)
+    file(WRITE ${PROJECT_BINARY_DIR}/test_pch.cpp "// Holds the tests' precompiled header.\n")
+    add_library(clearway_test_pch OBJECT ${PROJECT_BINARY_DIR}/test_pch.cpp)
+    target_link_libraries(clearway_test_pch PRIVATE clearway_options GTest::gmock)
+    target_compile_options(clearway_test_pch PRIVATE ${flags})
+    target_precompile_headers(clearway_test_pch PRIVATE
+      <algorithm> <functional> <map> <optional> <string> <vector> <gmock/gmock.h> <gtest/gtest.h>)
+  endif()
+  target_precompile_headers(${name} REUSE_FROM clearway_test_pch)
+endfunction()
+
 # clearway_test(name [NETWORK] SOURCES ... LINK libs... [TIMEOUT s] [LABELS ...]): one gtest
 # program, one CTest entry. NETWORK runs it in a network namespace of its own, where multicast
 # goes over loopback.
@@ -50,6 +70,7 @@ function(clearway_test name)
   cmake_parse_arguments(ARG "NETWORK" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE clearway_options ${ARG_LINK} GTest::gmock GTest::gtest_main)
+  clearway_test_options(${name})
   set_target_properties(${name} PROPERTIES
                         RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
   if(ARG_NETWORK)
