@@ -81,16 +81,19 @@ void SheriffProcess::Listen(const Settings& settings) {
 }
 
 void SheriffProcess::Update() {
-  // A handler that acts on what it is told calls this again: the turn that runs takes that along.
+  // A handler that acts on what it is told calls this again: once more round then.
+  is_update_due_ = true;
   if (std::exchange(is_updating_, true)) return;
-  const std::int64_t now_us = runtime_.MonotonicUs();
-  runner_.Tick(now_us);
-  for (const core::procman::Orders& orders : sheriff_.OrdersDue(now_us, runtime_.UtimeNow())) {
-    process::Publish(runtime_, channels::kPmOrders, messages::ToLcm(orders));
+  while (std::exchange(is_update_due_, false)) {
+    const std::int64_t now_us = runtime_.MonotonicUs();
+    runner_.Tick(now_us);
+    for (const core::procman::Orders& orders : sheriff_.OrdersDue(now_us, runtime_.UtimeNow())) {
+      process::Publish(runtime_, channels::kPmOrders, messages::ToLcm(orders));
+    }
+    sheriff_.Tick(now_us);
+    HandOnChanges();
+    if (on_update_) on_update_();
   }
-  sheriff_.Tick(now_us);
-  HandOnChanges();
-  if (on_update_) on_update_();
   is_updating_ = false;
 }
 

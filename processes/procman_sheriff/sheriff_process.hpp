@@ -34,7 +34,7 @@ class SheriffProcess {
     bool takes_output = false;
   };
 
-  /// @pre `runtime` outlives the process.
+  /// @pre `runtime` outlives the process, and runs no more once that is destroyed.
   SheriffProcess(process::Runtime& runtime, const Settings& settings);
   SheriffProcess(const SheriffProcess&) = delete;
   SheriffProcess& operator=(const SheriffProcess&) = delete;
@@ -72,6 +72,7 @@ class SheriffProcess {
   process::Runtime::TimerId timer_ = 0;
   std::int64_t next_change_ = 0;
   bool is_updating_ = false;
+  bool is_update_due_ = false;
   std::int64_t invalid_ = 0;
   std::function<void(const core::procman::Change&)> on_change_;
   std::function<void(const CommandOutput&)> on_output_;

@@ -174,6 +174,7 @@ void Sheriff::TakeWhatTheReportLacks(KnownDeputy& deputy) {
           .command = entry->first,
           .from = std::string(WordsFor(command.noted.value_or(Status::kUnknown))),
           .to = {},
+          .before = command.noted.value_or(Status::kUnknown),
           .text = "removed"});
     entry = commands_.erase(entry);
   }

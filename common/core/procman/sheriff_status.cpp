@@ -220,6 +220,7 @@ void Sheriff::NoteChanges(std::int64_t now_us, std::optional<std::int64_t> utime
           .command = id,
           .from = std::string(WordsFor(before)),
           .to = std::string(WordsFor(judgement.status)),
+          .before = before,
           .status = judgement.status,
           .text = std::move(judgement.text)});
   }

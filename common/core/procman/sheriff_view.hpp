@@ -138,7 +138,8 @@ struct Change {
   std::string command;               ///< kCommand only.
   std::string from;                  ///< Status in words, or what was; may be empty.
   std::string to;                    ///< Empty: the command is gone.
-  Status status = Status::kUnknown;  ///< kCommand only: what `to` means.
+  Status before = Status::kUnknown;  ///< kCommand only: what `from` means; `status` likewise `to`.
+  Status status = Status::kUnknown;
   std::string text;
 };
 
