@@ -30,6 +30,8 @@ constexpr std::int64_t kHealthAnswersUs = 300'000;
 // Orders that nobody waits for are sent three times.
 constexpr std::int64_t kRepeatUs = 100'000;
 constexpr int kRepeats = 2;
+constexpr const char* kNobodyHeard =
+    "no deputy is heard: is one running, and is this its LCM address?";
 
 SheriffProcess::Settings SettingsFor(SheriffVerb verb) {
   return {.mode = Sheriff::Mode::kObserve,
@@ -101,9 +103,15 @@ void SheriffVerbRun::Listen() {
     }
     return;
   }
-  if (!ResolveTargets()) return;
+  const bool knows_nobody =
+      !request_.deployment && process_.sheriff().Look(runtime_.MonotonicUs()).deputies.empty();
+  if (!knows_nobody && !ResolveTargets()) return;
   if (request_.verb == SheriffVerb::kStatus) {
     Answer();
+    return;
+  }
+  if (knows_nobody) {
+    Finish(kSheriffUnheard, kNobodyHeard);
     return;
   }
   const std::string unheard = Unheard(NeededDeputies());
@@ -224,7 +232,7 @@ void SheriffVerbRun::Answer() {
   if (!unheard.empty()) {
     Finish(kSheriffUnheard, unheard);
   } else if (snapshot.deputies.empty()) {
-    Finish(kSheriffUnheard, "no deputy is heard: is one running, and is this its LCM address?");
+    Finish(kSheriffUnheard, kNobodyHeard);
   } else {
     Finish(0, {});
   }

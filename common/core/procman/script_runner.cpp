@@ -158,7 +158,7 @@ ScriptRunner::Verdict ScriptRunner::IsRunning(const CommandView& view) {
       if (!is_over) return Verdict::kNotYet;
       return view.exit_code == 0 && !view.auto_respawn ? Verdict::kYes : Verdict::kNever;
     case Status::kFailed:
-      return is_over ? Verdict::kNever : Verdict::kNotYet;
+      return is_over && view.is_settled ? Verdict::kNever : Verdict::kNotYet;
     case Status::kGaveUp:
     case Status::kRefused:
       return Verdict::kNever;

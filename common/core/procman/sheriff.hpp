@@ -147,6 +147,9 @@ class Sheriff {
   [[nodiscard]] CommandView ViewOf(const KnownCommand& command, std::int64_t now_us) const;
   [[nodiscard]] DeputyView ViewOf(const std::string& deputy, std::int64_t now_us) const;
   [[nodiscard]] std::vector<const KnownCommand*> InOrder() const;
+  [[nodiscard]] static bool IsSettled(const KnownCommand& command,
+                                      const Copy& copy,
+                                      std::int64_t now_us);
   void AddStrays(const KnownCommand& command,
                  std::int64_t now_us,
                  std::vector<CommandView>& views) const;

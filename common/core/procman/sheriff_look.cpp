@@ -76,6 +76,16 @@ std::vector<const KnownCommand*> Sheriff::InOrder() const {
   return commands;
 }
 
+bool Sheriff::IsSettled(const KnownCommand& command, const Copy& copy, std::int64_t now_us) {
+  const std::int64_t for_us = now_us - copy.reported->since_us;
+  if (copy.reported->report.pid != 0) {
+    return !copy.reported->was_seen_down || for_us >= kSettledUs;
+  }
+  // Why it is down its deputy may be about to tell.
+  if (copy.is_told && copy.health == nullptr && for_us < kStopTakenUs) return false;
+  return !command.stop_needs_time || now_us - command.asked_us >= kStopTakenUs;
+}
+
 CommandView Sheriff::ViewOf(const KnownCommand& command, std::int64_t now_us) const {
   Judgement judgement = Judge(command, now_us);
   CommandView view{.id = command.spec.id,
@@ -101,10 +111,7 @@ CommandView Sheriff::ViewOf(const KnownCommand& command, std::int64_t now_us) co
   const CommandReport& report = copy.reported->report;
   FillIn(view, report);
   view.deaths = copy.reported->deaths;
-  view.is_settled =
-      report.pid != 0
-          ? !copy.reported->was_seen_down || now_us - copy.reported->since_us >= kSettledUs
-          : !command.stop_needs_time || now_us - command.asked_us >= kStopTakenUs;
+  view.is_settled = IsSettled(command, copy, now_us);
   if (report.pid != 0 && report.pid == command.old_exec_pid) {
     view.differs = "runs \"" + command.old_exec + "\" until it is restarted";
   } else if (const std::string names = Differences(command, report); !names.empty()) {
