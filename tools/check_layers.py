@@ -37,6 +37,7 @@ LIBRARIES = {
     r"<yaml-cpp": ["common/io/map"],
     r"<png": ["common/io/map", "tests/unit/io"],
     r"<zlib": ["common/core/mapping"],
+    r"<n?curses": ["processes/procman_sheriff/screen"],
 }
 
 # What pure algorithms never touch.

@@ -6,11 +6,12 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # What building and running needs (Debian 12, Raspberry Pi OS 12).
 build_packages=(g++ cmake ninja-build pkg-config liblcm-dev liblcm-bin libpcl-dev libflann-dev
   libeigen3-dev libtinyxml2-dev libcli11-dev libspdlog-dev nlohmann-json3-dev libcairo2-dev
-  libyaml-cpp-dev libpng-dev zlib1g-dev libgtest-dev libgmock-dev libbenchmark-dev python3 iproute2)
+  libyaml-cpp-dev libpng-dev zlib1g-dev libgtest-dev libgmock-dev libbenchmark-dev
+  libncurses-dev python3 iproute2)
 # What the jar of the types and lcm-spy need besides.
 java_packages=(default-jdk-headless default-jre liblcm-java libjchart2d-java)
 # What the sanitizer builds and the checks need besides.
-check_packages=(xvfb clang libclang-rt-14-dev llvm clang-format)
+check_packages=(xvfb tmux clang libclang-rt-14-dev llvm clang-format)
 
 say() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; }
 

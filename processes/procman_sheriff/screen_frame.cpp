@@ -44,7 +44,9 @@ std::vector<Piece> TitlePieces(const ScreenModel& model, const std::string& cloc
           {std::to_string(all.ready) + "/" + std::to_string(all.commands) + " ready"},
           {Counted(all.trouble, "IN TROUBLE"), Style::kBanner},
           {Counted(static_cast<int>(silent), hosts), Style::kBanner},
-          {snapshot.is_observer ? "observer" : "in command"},
+          {model.content().is_looking ? "looking"
+           : snapshot.is_observer     ? "observer"
+                                      : "in command"},
           {Printable(ShortId(snapshot.sheriff_id))},
           {clock}};
 }
@@ -52,7 +54,8 @@ std::vector<Piece> TitlePieces(const ScreenModel& model, const std::string& cloc
 std::string Progress(const ScreenModel& model) {
   const auto& progress = model.content().progress;
   const std::string name = "script " + progress.script;
-  const std::string text = progress.text.empty() ? "" : ": " + progress.text;
+  const bool has_text = !progress.text.empty() && progress.state != ScriptRunner::State::kAborted;
+  const std::string text = has_text ? ": " + progress.text : "";
   switch (progress.state) {
     case ScriptRunner::State::kRunning:
       return name + " is running, " + TimeInWords(progress.elapsed_us) + text;
@@ -133,15 +136,16 @@ std::vector<std::pair<std::string, std::string>> KeysFor(const ScreenModel& mode
 
 Line TitleLine(const ScreenModel& model, int width, const std::string& clock) {
   std::vector<Piece> pieces = TitlePieces(model, clock);
-  // In this order they make room: the sheriff's id, the clock, the mode, what is ready.
+  // In this order they make room: the file's folder, the sheriff's id, the clock, the mode, what is
+  // ready.
+  std::string& file = pieces[0].text;
+  if (WidthOf(pieces) > width) file.erase(0, file.rfind('/') + 1);
   for (const std::size_t i : {5U, 6U, 4U, 1U}) {
     if (WidthOf(pieces) <= width) break;
     pieces[i].text.clear();
   }
-  // The end of a path says more than its begin.
   const int too_many = WidthOf(pieces) - width;
   if (too_many > 0) {
-    std::string& file = pieces[0].text;
     const int keep = std::max(CellsOf(std::string_view(file)) - too_many - 2, 8);
     while (CellsOf(std::string_view(file)) > keep) file.erase(0, FirstCharacter(file).bytes);
     file.insert(0, "..");
@@ -160,7 +164,9 @@ Lines BannerLines(const ScreenModel& model, int width) {
   const auto& snapshot = model.snapshot();
   const auto& other = snapshot.other;
   Lines lines;
-  if (snapshot.is_observer) {
+  if (model.content().is_looking) {
+    // A second, which needs no banner that jumps in and out.
+  } else if (snapshot.is_observer) {
     lines.push_back(Banner(
         other ? "OBSERVER: no orders from here; sheriff " + ShortId(other->id) + " is in command"
               : "OBSERVER: no orders from here, and no other sheriff is heard; c takes command",
@@ -168,7 +174,7 @@ Lines BannerLines(const ScreenModel& model, int width) {
   } else if (other) {
     lines.push_back(Banner("ANOTHER SHERIFF IS ACTIVE: " + ShortId(other->id) + ", " +
                                TimeInWords(other->age_us) +
-                               " ago. The last order wins; o steps back",
+                               " ago; o steps back. The last order wins",
                            width));
   }
   const bool is_on_its_page = model.mode() == ScreenModel::Mode::kScripts;

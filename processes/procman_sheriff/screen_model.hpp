@@ -71,6 +71,9 @@ struct ScreenContent {
   core::procman::Snapshot snapshot{};
   std::vector<core::procman::Script> scripts{};
   ScriptProgress progress{};
+  /// Not known yet whether another sheriff is in command: until then an observer that is about to
+  /// take command.
+  bool is_looking = false;
 };
 
 /// Which rows the parts of the view have; what it takes to scroll.

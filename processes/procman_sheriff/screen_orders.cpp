@@ -34,7 +34,8 @@ Intent ScreenModel::Ask(std::string text, Intent intent) {
 Intent ScreenModel::Order(Intent::Kind kind) {
   const TreeLine& line = lines_[selected_];
   if (snapshot().is_observer) {
-    SetNotice("An observer gives no orders. Press c to take command.");
+    SetNotice(content_.is_looking ? "Looking for other sheriffs: try again in a second."
+                                  : "An observer gives no orders. Press c to take command.");
     return {};
   }
   Intent intent{.kind = kind, .target = line.target()};

@@ -153,7 +153,7 @@ Lines ProgressLines(const ScreenModel& model, int width) {
                              width));
   const bool is_bad = progress.state == ScriptRunner::State::kFailed ||
                       progress.state == ScriptRunner::State::kTimedOut;
-  if (!progress.text.empty()) {
+  if (!progress.text.empty() && progress.state != ScriptRunner::State::kAborted) {
     for (const std::string& piece : Wrapped(Printable(progress.text), std::max(width - 3, 2))) {
       lines.push_back(LineWriter(width)
                           .Add(is_bad ? " ! " : "   ", Style::kTrouble)
