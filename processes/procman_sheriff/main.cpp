@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
+#include <string_view>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +12,7 @@
 #include "common/graph/options.hpp"
 #include "common/io/procman/pmd_reader.hpp"
 #include "common/process/live_runtime.hpp"
+#include "processes/procman_sheriff/screen.hpp"
 #include "processes/procman_sheriff/table.hpp"
 #include "processes/procman_sheriff/verbs.hpp"
 
@@ -20,7 +22,9 @@ namespace {
 constexpr const char* kDescription =
     "Starts, stops and watches the processes of all hosts.\n"
     "  clearway-sheriff [FILE.pmd] [VERB [TARGET...]]\n"
-    "Verbs: status (default), start, stop, restart, run SCRIPT, follow, observe, check.\n"
+    "Verbs: status, start, stop, restart, run SCRIPT, follow, observe, check, screen.\n"
+    "FILE alone on a terminal shows the full-screen view, and so does observe, without giving\n"
+    "orders; else status is the default.\n"
     "A target is everything, a command's id or a group's path; cmd:NAME or group:NAME where a "
     "name\n"
     "is both. start, stop and restart need one. Without FILE what deputies report is what there "
@@ -61,6 +65,13 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
   app.footer(kExitStatuses);
 }
 
+// Whether there is a terminal that the full-screen view can be drawn on.
+bool HasScreen() {
+  const char* term = std::getenv("TERM");
+  return isatty(STDIN_FILENO) != 0 && isatty(STDOUT_FILENO) != 0 && term != nullptr &&
+         *term != '\0' && std::string_view(term) != "dumb";
+}
+
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -77,14 +88,17 @@ std::string TakeWords(std::vector<std::string> words, SheriffRequest& request) {
     if (!verb) throw UsageError("\"" + words.front() + "\" is no verb; see --help");
     request.verb = *verb;
     words.erase(words.begin());
+  } else if (!file.empty() && !request.json && HasScreen()) {
+    request.verb = SheriffVerb::kScreen;
   }
   request.targets = std::move(words);
   return file;
 }
 
 void Check(const SheriffRequest& request, const std::string& file) {
-  const bool takes_targets =
-      request.verb != SheriffVerb::kCheck && request.verb != SheriffVerb::kObserve;
+  const bool takes_targets = request.verb != SheriffVerb::kCheck &&
+                             request.verb != SheriffVerb::kObserve &&
+                             request.verb != SheriffVerb::kScreen;
   const bool needs_target = GivesOrders(request.verb) && request.verb != SheriffVerb::kRun;
   if (request.verb == SheriffVerb::kRun) {
     if (file.empty()) throw UsageError("run needs a FILE.pmd, which has the script");
@@ -124,6 +138,20 @@ SheriffPrinter Printer() {
           .shows_progress = isatty(STDERR_FILENO) != 0};
 }
 
+int Show(const Arguments& arguments) {
+  process::LiveRuntime runtime(Buses(arguments.common.lcm_url), "");
+  const bool observes = arguments.request.verb == SheriffVerb::kObserve;
+  SheriffProcess process(runtime,
+                         {.mode = core::procman::Sheriff::Mode::kObserve,
+                          .discovers = !observes,
+                          .takes_output = true});
+  if (arguments.request.deployment) {
+    process.sheriff().Load(*arguments.request.deployment, runtime.MonotonicUs());
+  }
+  return screen::RunScreen(
+      process, runtime, observes ? screen::ScreenStart::kObserve : screen::ScreenStart::kCommand);
+}
+
 int Live(const Arguments& arguments) {
   process::LiveRuntime runtime(Buses(arguments.common.lcm_url), "");
   SheriffVerbRun verb(
@@ -155,6 +183,9 @@ int Run(Arguments& arguments) {
       FindScript(*request.deployment, request.targets.front()) == nullptr) {
     throw UsageError(file + " has no script \"" + request.targets.front() + "\"");
   }
+  const bool observes_on_screen =
+      request.verb == SheriffVerb::kObserve && !request.json && HasScreen();
+  if (request.verb == SheriffVerb::kScreen || observes_on_screen) return Show(arguments);
   return Live(arguments);
 }
 

@@ -16,7 +16,7 @@ using core::procman::Script;
 using core::procman::ScriptAction;
 using core::procman::Target;
 
-constexpr std::array<std::pair<std::string_view, SheriffVerb>, 8> kVerbs = {{
+constexpr std::array<std::pair<std::string_view, SheriffVerb>, 9> kVerbs = {{
     {"status", SheriffVerb::kStatus},
     {"start", SheriffVerb::kStart},
     {"stop", SheriffVerb::kStop},
@@ -25,6 +25,7 @@ constexpr std::array<std::pair<std::string_view, SheriffVerb>, 8> kVerbs = {{
     {"follow", SheriffVerb::kFollow},
     {"observe", SheriffVerb::kObserve},
     {"check", SheriffVerb::kCheck},
+    {"screen", SheriffVerb::kScreen},
 }};
 
 constexpr std::size_t kMostNames = 12;

@@ -20,7 +20,17 @@ inline constexpr int kSheriffTimeout = 75;
 inline constexpr int kSheriffOther = 77;  ///< Another sheriff is active.
 inline constexpr int kSheriffFile = 78;
 
-enum class SheriffVerb { kStatus, kStart, kStop, kRestart, kRun, kFollow, kObserve, kCheck };
+enum class SheriffVerb {
+  kStatus,
+  kStart,
+  kStop,
+  kRestart,
+  kRun,
+  kFollow,
+  kObserve,
+  kCheck,
+  kScreen
+};
 
 /// Nothing when the word is none.
 [[nodiscard]] std::optional<SheriffVerb> VerbOf(std::string_view word);

@@ -15,6 +15,7 @@
 #include "processes/procman_sheriff/screen_model.hpp"
 #include "processes/procman_sheriff/screen_terminal.hpp"
 #include "processes/procman_sheriff/screen_text.hpp"
+#include "processes/procman_sheriff/verbs.hpp"
 
 namespace clearway::screen {
 namespace {
@@ -240,7 +241,7 @@ void Screen::OnChange(const Change& change) {
 // A deputy of clearway itself says among a command's output how its runs begin and end.
 bool Screen::IsWorthAMark(const Change& change) const {
   if (change.kind != Change::Kind::kCommand || change.to.empty()) return false;
-  if (change.from == WordsFor(core::procman::Status::kUnknown)) return false;
+  if (change.before == core::procman::Status::kUnknown) return false;
   const auto snapshot = process_.sheriff().Look(runtime_.MonotonicUs());
   return std::none_of(snapshot.deputies.begin(), snapshot.deputies.end(), [&](const auto& deputy) {
     return deputy.id == change.deputy && deputy.tells_health;
@@ -261,7 +262,7 @@ void Screen::LookForOthers() {
   const std::int64_t elapsed_us = runtime_.MonotonicUs() - began_us_;
   if (elapsed_us < kOnePeriodUs && !HaveAllAnswered()) return;
   const auto other = process_.sheriff().ActiveOther(runtime_.MonotonicUs());
-  if (!other) {
+  if (!other || HasSheriffEnded(other->id, runtime_.HostName())) {
     is_looking_ = false;
     process_.sheriff().SetMode(Sheriff::Mode::kCommand);
   } else if (elapsed_us >= kOthersAreForgottenUs) {
