@@ -2,6 +2,7 @@
 #include "common/core/procman/exec_string.hpp"
 
 #include <cstddef>
+#include <stdexcept>
 
 #include "common/core/procman/exec_words.hpp"
 
@@ -101,6 +102,12 @@ ParsedExecLine Assemble(const std::vector<ExecWord>& words, const LookupVariable
   return {.line = std::move(line), .problem = {}};
 }
 
+void Append(const std::string& word, std::string& text) {
+  if (word.find('\0') != std::string::npos) throw std::invalid_argument("a NUL in a command line");
+  if (!text.empty()) text += ' ';
+  text += internal::QuoteExecWord(word);
+}
+
 }  // namespace
 
 ParsedExecLine ParseExecLine(std::string_view text, const LookupVariable& lookup) {
@@ -111,6 +118,23 @@ ParsedExecLine ParseExecLine(std::string_view text, const LookupVariable& lookup
   internal::SplitExecWords split = internal::SplitIntoExecWords(text);
   if (!split.problem.empty()) return Refused(std::move(split.problem));
   return Assemble(split.words, lookup);
+}
+
+std::string FormatExecLine(const ExecLine& line) {
+  const bool has_program = !line.arguments.empty() && !line.arguments.front().empty() &&
+                           line.arguments.front().find('=') == std::string::npos;
+  if (!has_program) {
+    throw std::invalid_argument("a command line needs a program, and without '=' in it");
+  }
+  std::string text;
+  for (const auto& [name, value] : line.environment) {
+    if (name.empty() || name.find('=') != std::string::npos) {
+      throw std::invalid_argument("a setting needs a name, and without '=' in it");
+    }
+    Append(name + '=' + value, text);
+  }
+  for (const std::string& argument : line.arguments) Append(argument, text);
+  return text;
 }
 
 }  // namespace clearway::core::procman

@@ -17,6 +17,7 @@ struct ExecLine {
   std::vector<std::pair<std::string, std::string>> environment;
   /// Program and arguments, variables expanded.
   std::vector<std::string> arguments;
+  friend bool operator==(const ExecLine&, const ExecLine&) = default;
 };
 
 /// Either a line or what is wrong with the text.
@@ -44,5 +45,10 @@ using LookupVariable = std::function<std::optional<std::string>(const std::strin
 /// long a text.
 /// O(n) time, n with the values.
 [[nodiscard]] ParsedExecLine ParseExecLine(std::string_view text, const LookupVariable& lookup);
+
+/// The text that is parsed into this line, whatever variables are set: paths with blanks, quotes,
+/// dollars and backslashes survive. Throws std::invalid_argument for what the grammar cannot say: a
+/// NUL, no program, a program with '=' in it, a setting without a name or with '=' in it.
+[[nodiscard]] std::string FormatExecLine(const ExecLine& line);
 
 }  // namespace clearway::core::procman

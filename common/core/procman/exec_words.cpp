@@ -10,6 +10,8 @@ namespace {
 // What isspace() takes in the C locale.
 constexpr std::string_view kWhiteSpace = " \t\n\v\f\r";
 constexpr char kNoQuote = '\0';
+// Besides white space: what does not mean itself unless a backslash stands before it.
+constexpr std::string_view kSpecial = "'\"\\$";
 
 std::string AtByte(std::size_t index) {
   return "byte " + std::to_string(index + 1);
@@ -80,6 +82,18 @@ class WordSplitter {
 
 SplitExecWords SplitIntoExecWords(std::string_view text) {
   return WordSplitter(text).Split();
+}
+
+std::string QuoteExecWord(std::string_view word) {
+  if (word.empty()) return "''";
+  std::string quoted;
+  for (const char character : word) {
+    const bool is_plain = kWhiteSpace.find(character) == std::string_view::npos &&
+                          kSpecial.find(character) == std::string_view::npos;
+    if (!is_plain) quoted += '\\';
+    quoted += character;
+  }
+  return quoted;
 }
 
 }  // namespace clearway::core::procman::internal

@@ -25,4 +25,8 @@ struct SplitExecWords {
 /// backslash at the end, a NUL. Empty quotes make an empty word. O(n) time.
 [[nodiscard]] SplitExecWords SplitIntoExecWords(std::string_view text);
 
+/// The same word as text that is split into it alone, with nothing in it that would be expanded.
+/// @pre no NUL.
+[[nodiscard]] std::string QuoteExecWord(std::string_view word);
+
 }  // namespace clearway::core::procman::internal

@@ -141,6 +141,43 @@ TEST(ExecString, SettingsComeBackWithTheirOrder) {
   }
 }
 
+TEST(ExecString, WhatIsFormattedIsParsedIntoTheSameLineAndNothingIsExpanded) {
+  const auto all_are_set = [](const std::string&) {
+    return std::optional<std::string>("expanded");
+  };
+  RandomQuoter random(44);
+  for (int round = 0; round < 5000; ++round) {
+    ExecLine line{.environment = {}, .arguments = {}};
+    for (std::size_t i = random.Below(4); i > 0; --i) {
+      line.environment.emplace_back("N " + std::to_string(i), random.Word(8));
+    }
+    line.arguments.push_back("/opt/it's a $HOME \\/" + std::to_string(random.Below(9)));
+    for (std::size_t i = random.Below(6); i > 0; --i) line.arguments.push_back(random.Word(12));
+
+    const std::string text = FormatExecLine(line);
+    const ParsedExecLine parsed = ParseExecLine(text, all_are_set);
+
+    ASSERT_TRUE(parsed.line.has_value()) << testing::PrintToString(text) << parsed.problem;
+    EXPECT_EQ(*parsed.line, line) << testing::PrintToString(text);
+  }
+}
+
+TEST(ExecString, FormatsPlainWordsAsTheyAre) {
+  EXPECT_EQ(FormatExecLine({.environment = {{"A", "1"}}, .arguments = {"prog", "--set", "b.c=d"}}),
+            "A=1 prog --set b.c=d");
+}
+
+TEST(ExecString, RefusesToFormatWhatTheGrammarCannotSay) {
+  const std::vector<ExecLine> lines = {{.environment = {}, .arguments = {}},
+                                       {.environment = {}, .arguments = {""}},
+                                       {.environment = {}, .arguments = {"a=b/prog"}},
+                                       {.environment = {}, .arguments = {"prog", {"a\0b", 3}}},
+                                       {.environment = {{"", "1"}}, .arguments = {"prog"}},
+                                       {.environment = {{"A=B", "1"}}, .arguments = {"prog"}}};
+  for (const ExecLine& line : lines)
+    EXPECT_THROW((void)FormatExecLine(line), std::invalid_argument);
+}
+
 TEST(ExecString, KeepsALastArgumentOfOneCharacter) {
   EXPECT_THAT(ArgumentsOf("sleep 5"), ElementsAre("sleep", "5"));
   EXPECT_THAT(ArgumentsOf("x"), ElementsAre("x"));
