@@ -23,7 +23,9 @@ std::string NewSheriffId(process::Runtime& runtime) {
 }  // namespace
 
 SheriffProcess::SheriffProcess(process::Runtime& runtime, const Settings& settings)
-    : runtime_(runtime), sheriff_(NewSheriffId(runtime), settings.mode), runner_(sheriff_) {
+    : runtime_(runtime),
+      sheriff_(NewSheriffId(runtime), settings.mode, settings.scope),
+      runner_(sheriff_) {
   Listen(settings);
   timer_ = runtime_.Every(kTickUs, [this] { Update(); });
   if (settings.discovers) Discover();

@@ -28,6 +28,7 @@ class SheriffProcess {
  public:
   struct Settings {
     core::procman::Sheriff::Mode mode = core::procman::Sheriff::Mode::kCommand;
+    core::procman::Sheriff::Scope scope = core::procman::Sheriff::Scope::kBus;
     /// Ask all deputies to report at once. Off: nothing is ever sent but orders.
     bool discovers = true;
     /// Listen to PM_OUTPUT.

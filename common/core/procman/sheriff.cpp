@@ -9,7 +9,8 @@
 
 namespace clearway::core::procman {
 
-Sheriff::Sheriff(std::string sheriff_id, Mode mode) : id_(std::move(sheriff_id)), mode_(mode) {}
+Sheriff::Sheriff(std::string sheriff_id, Mode mode, Scope scope)
+    : id_(std::move(sheriff_id)), mode_(mode), scope_(scope) {}
 
 void Sheriff::SetMode(Mode mode) {
   mode_ = mode;
@@ -23,6 +24,7 @@ void Sheriff::SetMode(Mode mode) {
 
 void Sheriff::Load(Deployment deployment, std::int64_t now_us) {
   deployment_ = std::move(deployment);
+  std::erase_if(deputies_, [this](const auto& entry) { return !IsInScope(entry.first); });
   for (auto& [id, command] : commands_) command.is_in_file = false;
   for (std::size_t i = 0; i < deployment_.commands.size(); ++i) {
     const DeployedCommand& deployed = deployment_.commands[i];

@@ -32,8 +32,15 @@ class Sheriff {
     kObserve,  ///< Never gives any; mirrors what other sheriffs order.
   };
 
+  /// Whom a sheriff knows.
+  enum class Scope {
+    kBus,   ///< All deputies that are heard: their commands are taken over, and orders go to them.
+    kFile,  ///< Only those that the loaded file names: for a sheriff with deputies of its own on a
+            ///< bus where others are commanded by somebody else.
+  };
+
   /// @pre sheriff_id is not empty and no other sheriff's.
-  Sheriff(std::string sheriff_id, Mode mode);
+  Sheriff(std::string sheriff_id, Mode mode, Scope scope = Scope::kBus);
 
   [[nodiscard]] const std::string& id() const { return id_; }
   [[nodiscard]] Mode mode() const { return mode_; }
@@ -41,7 +48,7 @@ class Sheriff {
   void SetMode(Mode mode);
 
   /// Takes the commands of a file; changes nothing that runs. May be called again with a newer
-  /// file: what that does not hold any more stays known while a deputy lists it.
+  /// file: what that does not hold any more stays known while a deputy in scope lists it.
   void Load(Deployment deployment, std::int64_t now_us);
   [[nodiscard]] const Deployment& deployment() const { return deployment_; }
 
@@ -117,6 +124,7 @@ class Sheriff {
   void MarkChanged(const KnownCommand& command);
 
   // sheriff_intake.cpp
+  [[nodiscard]] bool IsInScope(const std::string& deputy) const;
   void TakeOver(const KnownDeputy& deputy, const ReportedCommand& reported, std::int64_t now_us);
   void TakeWhatTheReportLacks(KnownDeputy& deputy);
   void RefineByHealth(KnownDeputy& deputy, std::int64_t now_us);
@@ -156,6 +164,7 @@ class Sheriff {
 
   std::string id_;
   Mode mode_;
+  Scope scope_;
   Deployment deployment_;
   std::map<std::string, KnownDeputy> deputies_;
   std::map<std::string, KnownCommand> commands_;

@@ -15,7 +15,7 @@ constexpr std::size_t kMaxSheriffs = 64;
 }  // namespace
 
 void Sheriff::OnForeignOrders(const Orders& orders, std::int64_t now_us) {
-  if (orders.sheriff_id == id_ || orders.deputy_id.empty()) return;
+  if (orders.sheriff_id == id_ || orders.deputy_id.empty() || !IsInScope(orders.deputy_id)) return;
   if (sheriffs_us_.size() >= kMaxSheriffs && !sheriffs_us_.contains(orders.sheriff_id)) {
     sheriffs_us_.erase(std::min_element(
         sheriffs_us_.begin(), sheriffs_us_.end(), [](const auto& a, const auto& b) {

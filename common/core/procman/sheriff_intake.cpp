@@ -61,8 +61,14 @@ ReportedCommand Follow(const ReportedCommand* before,
 
 }  // namespace
 
+bool Sheriff::IsInScope(const std::string& deputy) const {
+  return scope_ == Scope::kBus || std::any_of(deployment_.commands.begin(),
+                                              deployment_.commands.end(),
+                                              [&](const auto& c) { return c.deputy == deputy; });
+}
+
 void Sheriff::OnReport(const DeputyReport& report, std::int64_t now_us) {
-  if (report.deputy_id.empty()) return;
+  if (report.deputy_id.empty() || !IsInScope(report.deputy_id)) return;
   if (deputies_.size() >= kMaxDeputies && !deputies_.contains(report.deputy_id)) return;
   KnownDeputy& deputy = deputies_[report.deputy_id];
   deputy.id = report.deputy_id;
@@ -181,7 +187,7 @@ void Sheriff::TakeWhatTheReportLacks(KnownDeputy& deputy) {
 }
 
 void Sheriff::OnHealth(const DeputyHealth& health, std::int64_t utime, std::int64_t now_us) {
-  if (health.deputy_id.empty()) return;
+  if (health.deputy_id.empty() || !IsInScope(health.deputy_id)) return;
   if (deputies_.size() >= kMaxDeputies && !deputies_.contains(health.deputy_id)) return;
   KnownDeputy& deputy = deputies_[health.deputy_id];
   deputy.id = health.deputy_id;

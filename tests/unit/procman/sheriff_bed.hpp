@@ -66,8 +66,10 @@ class SheriffBed {
   }
 
   /// @return the sheriff, which lives as long as the bed.
-  Sheriff& AddSheriff(const std::string& id, Sheriff::Mode mode = Sheriff::Mode::kCommand) {
-    sheriffs_.push_back(std::make_unique<Sheriff>(id, mode));
+  Sheriff& AddSheriff(const std::string& id,
+                      Sheriff::Mode mode = Sheriff::Mode::kCommand,
+                      Sheriff::Scope scope = Sheriff::Scope::kBus) {
+    sheriffs_.push_back(std::make_unique<Sheriff>(id, mode, scope));
     for (auto& [name, deputy] : deputies_) pending_reports_.insert(name);
     for (auto& [name, deputy] : own_) pending_reports_.insert(name);
     return *sheriffs_.back();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a sheriff tells the reference's deputy, and what comes of it.
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -413,6 +414,36 @@ TEST(SheriffOrdersTest, ADeputyTellsOfAnotherSheriff) {
   ASSERT_TRUE(sheriff.ActiveOther(900'000).has_value());
   EXPECT_FALSE(sheriff.ActiveOther(900'000)->was_heard);
   EXPECT_FALSE(sheriff.ActiveOther(1'100'000).has_value());
+}
+
+TEST(SheriffOrdersTest, OneThatKnowsOnlyItsFilesDeputiesLeavesAllOthersAlone) {
+  SheriffBed bed({"mine", "theirs"});
+  Sheriff& other = bed.AddSheriff("other");
+  other.Load(Deploying({Deployed("a", "theirs"), Deployed("c", "theirs")}), bed.now_us());
+  other.Start(Everything(), bed.now_us());
+  bed.Run(1'000'000);
+  bed.RemoveSheriff(other);
+  const auto runs_before = bed.deputy("theirs").runs().size();
+  const auto orders_before = static_cast<std::ptrdiff_t>(bed.orders().size());
+
+  Sheriff& sheriff = bed.AddSheriff("s", Sheriff::Mode::kCommand, Sheriff::Scope::kFile);
+  bed.Run(2'000'000);
+  sheriff.Load(Deploying({Deployed("a", "mine"), Deployed("b", "mine")}), bed.now_us());
+  sheriff.Start(Everything(), bed.now_us());
+  bed.Run(3'000'000);
+
+  EXPECT_EQ(bed.StatusOf(sheriff, "a"), Status::kRunning) << "a namesake is no obstacle";
+  EXPECT_EQ(bed.StatusOf(sheriff, "b"), Status::kRunning);
+  EXPECT_FALSE(sheriff.View("c", bed.now_us()).has_value());
+  sheriff.Stop(Everything(), bed.now_us());
+  bed.Run(2'000'000);
+  EXPECT_EQ(bed.StatusOf(sheriff, "a"), Status::kStopped);
+  EXPECT_TRUE(bed.deputy("theirs").IsUp("a"));
+  EXPECT_TRUE(bed.deputy("theirs").IsUp("c"));
+  EXPECT_EQ(bed.deputy("theirs").runs().size(), runs_before);
+  EXPECT_TRUE(std::all_of(bed.orders().begin() + orders_before,
+                          bed.orders().end(),
+                          [](const Orders& orders) { return orders.deputy_id == "mine"; }));
 }
 
 }  // namespace
