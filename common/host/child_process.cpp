@@ -35,6 +35,7 @@ struct Parent {
 [[noreturn]] void Exec(char* const* arguments, int stderr_fd, int error_fd, const Parent& parent) {
   prctl(PR_SET_PDEATHSIG, parent.death_signal);
   if (getppid() != parent.pid) _exit(127);
+  setpgid(0, 0);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -64,6 +65,18 @@ std::optional<ResourceUse> UseOf(pid_t pid) {
     if (line.starts_with("Pss:")) use.pss_mb = std::stod(line.substr(4)) * 1024.0 / 1e6;
   }
   return use;
+}
+
+std::string LastLinesOf(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::deque<std::string> lines;
+  for (std::string line; std::getline(stream, line);) {
+    lines.push_back(line);
+    if (lines.size() > kLastLines) lines.pop_front();
+  }
+  std::string text;
+  for (const std::string& line : lines) text += "  " + line + '\n';
+  return text;
 }
 
 ChildProcess::ChildProcess(std::string name,
@@ -126,18 +139,6 @@ int ChildProcess::WaitOrKill(int timeout_ms) {
 
 std::optional<ResourceUse> ChildProcess::Use() const {
   return exit_status_ ? std::nullopt : UseOf(pid_);
-}
-
-std::string ChildProcess::LastWords() const {
-  std::ifstream file(stderr_file_);
-  std::deque<std::string> lines;
-  for (std::string line; std::getline(file, line);) {
-    lines.push_back(line);
-    if (lines.size() > kLastLines) lines.pop_front();
-  }
-  std::string text;
-  for (const std::string& line : lines) text += "  " + line + '\n';
-  return text;
 }
 
 }  // namespace clearway::host

@@ -19,7 +19,11 @@ struct ResourceUse {
 /// Of a process; nothing when it is gone or another user's.
 [[nodiscard]] std::optional<ResourceUse> UseOf(pid_t pid);
 
-/// A program that was started here. It dies with the thread that started it.
+/// The last lines of a file, each indented and with its line end; empty where there is no file.
+[[nodiscard]] std::string LastLinesOf(const std::filesystem::path& file);
+
+/// A program that was started here, in a process group of its own: what is typed at the terminal
+/// (Ctrl-C) is for its parent alone. It dies with the thread that started it.
 class ChildProcess {
  public:
   /// Starts a program, found by PATH when it has no slash; its stderr goes to the file. Throws
@@ -50,7 +54,7 @@ class ChildProcess {
   [[nodiscard]] std::optional<ResourceUse> Use() const;
 
   /// The last lines that it wrote to stderr.
-  [[nodiscard]] std::string LastWords() const;
+  [[nodiscard]] std::string LastWords() const { return LastLinesOf(stderr_file_); }
 
  private:
   std::string name_;

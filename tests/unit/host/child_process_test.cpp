@@ -34,6 +34,13 @@ TEST(ChildProcessTest, OneThatDoesNotEndIsKilled) {
   EXPECT_EQ(child.WaitOrKill(0), 128 + SIGKILL);
 }
 
+TEST(ChildProcessTest, WhatIsTypedAtTheTerminalIsNotForIt) {
+  const TestFolder folder;
+  const ChildProcess child("child", {TEST_CHILD, "wait"}, folder.path() / "log");
+
+  EXPECT_EQ(getpgid(child.pid()), child.pid());
+}
+
 TEST(ChildProcessTest, ThrowsWhenThereIsNoProgram) {
   const TestFolder folder;
 
