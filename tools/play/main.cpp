@@ -25,6 +25,7 @@ struct Arguments {
   std::optional<double> rate_hz;
   double scene_s = 10.0;
   PlayerSettings player;
+  bool headless = false;
 };
 
 void AddArguments(CLI::App& app, Arguments& arguments) {
@@ -49,11 +50,16 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(0.0, 60.0))
       ->type_name("S");
   app.add_flag("--loop", arguments.player.loop, "Begin again at the end");
+  app.add_flag("--headless", arguments.headless, "No progress line");
 }
 
 // On a terminal only: in a file, one line at the end says as much.
-void ShowProgress(const Player& player, const ScanSource& source) {
-  if (isatty(STDERR_FILENO) == 0) return;
+bool ShowsProgress(const Arguments& arguments) {
+  return !arguments.headless && isatty(STDERR_FILENO) != 0;
+}
+
+void ShowProgress(const Arguments& arguments, const Player& player, const ScanSource& source) {
+  if (!ShowsProgress(arguments)) return;
   std::fprintf(stderr,
                "\rplayed %zu of %zu scans%s",
                player.progress().played,
@@ -61,11 +67,11 @@ void ShowProgress(const Player& player, const ScanSource& source) {
                player.progress().unreadable > 0 ? " (some unreadable)" : "");
 }
 
-int ExitStatus(const Player& player) {
+int ExitStatus(const Arguments& arguments, const Player& player) {
   const Player::Progress& progress = player.progress();
   std::fprintf(stderr,
                "%splayed %zu scans, %zu could not be read\n",
-               isatty(STDERR_FILENO) != 0 ? "\n" : "",
+               ShowsProgress(arguments) ? "\n" : "",
                progress.played,
                progress.unreadable);
   return progress.unreadable == 0 ? graph::kExitOk : graph::kExitFailure;
@@ -76,11 +82,11 @@ int PlayLive(const Arguments& arguments, const graph::GraphConfig& config, ScanS
   process::Node node(
       runtime, {"play", CLEARWAY_VERSION, config::Digest(config)}, messages::channels::kPlayStatus);
   const Player player(node, source, arguments.player, [&runtime] { runtime.Stop(); });
-  runtime.Every(200'000, [&] { ShowProgress(player, source); });
+  runtime.Every(200'000, [&] { ShowProgress(arguments, player, source); });
   runtime.Run();
   node.RefreshAndPublishStatus();
-  ShowProgress(player, source);
-  return ExitStatus(player);
+  ShowProgress(arguments, player, source);
+  return ExitStatus(arguments, player);
 }
 
 int WriteLog(const Arguments& arguments, const graph::GraphConfig& config, ScanSource& source) {
@@ -99,9 +105,9 @@ int WriteLog(const Arguments& arguments, const graph::GraphConfig& config, ScanS
   const Player player(node, source, arguments.player, [&done] { done = true; });
   while (!done) {
     runtime.RunUntil(runtime.MonotonicUs() + source.period_us());
-    ShowProgress(player, source);
+    ShowProgress(arguments, player, source);
   }
-  return ExitStatus(player);
+  return ExitStatus(arguments, player);
 }
 
 int Main(int argc, char** argv) {
