@@ -2,12 +2,11 @@
 #include "tools/run_graph/graph_run.hpp"
 
 #include <algorithm>
-#include <cctype>
-#include <csignal>
 #include <cstdio>
 #include <stdexcept>
 
 #include "common/messages/channels.hpp"
+#include "tools/run_graph/graph_deployment.hpp"
 
 namespace clearway::run_graph {
 namespace {
@@ -19,36 +18,20 @@ constexpr std::int64_t kProgressUs = 200'000;
 constexpr std::int64_t kReadyTimeoutUs = 30'000'000;
 constexpr std::int64_t kDrainTimeoutUs = 3'000'000;
 constexpr std::int64_t kLiveSilenceUs = 3'000'000;
-constexpr int kStopTimeoutMs = 3000;
+constexpr std::int64_t kStopTimeoutUs = 4'000'000;  // The deputy kills after 3 s.
+constexpr std::int64_t kStepUs = 10'000;
 constexpr std::int64_t kLastWordsUs = 100'000;  // For the last status of each process.
-
-// The channels of a log that may be played into the graph, as a regular expression of
-// lcm-logplayer, which anchors it at both ends. POSE has one publisher.
-std::string InputsOf(const RunSettings& settings) {
-  std::string prefix;
-  for (const char c : settings.channel_prefix) {
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_') prefix += '\\';
-    prefix += c;
-  }
-  return prefix + (settings.with_pose_source ? "(LIDAR_POINTS|ODOMETRY)"
-                                             : "(LIDAR_POINTS|ODOMETRY|POSE|POSE_STATUS)");
-}
-
-std::string ProgramOf(std::string process) {
-  std::replace(process.begin(), process.end(), '_', '-');
-  return "clearway-" + process;
-}
 
 }  // namespace
 
 GraphRun::GraphRun(process::LiveRuntime& runtime, process::Node& node, const RunSettings& settings)
-    : runtime_(runtime), node_(node), settings_(settings) {
+    : runtime_(runtime), node_(node), settings_(settings), deputy_(runtime, settings) {
   if (!settings_.log.empty()) log_ = std::make_unique<io::LcmLogWriter>(settings_.log);
 }
 
 void GraphRun::Run() {
   Listen();
-  StartProcesses();
+  deputy_.Start(kGraphGroup);
   phase_start_us_ = runtime_.MonotonicUs();
   runtime_.Every(kSuperviseUs, [this] { Supervise(); });
   process::Runtime::TimerId progress = 0;
@@ -110,61 +93,30 @@ void GraphRun::Listen() {
   LogChannel(channels::kMap);
   LogChannel(channels::kLocalMap);
   LogChannel(channels::kRemovedPoints);
-}
-
-std::vector<std::string> GraphRun::ProcessNames() const {
-  std::vector<std::string> names{"preprocessor", "clusterer", "stop_guard"};
-  if (settings_.with_map_server) names.emplace_back("map_server");
-  if (settings_.with_pose_source) names.emplace_back("pose_source");
-  return names;
-}
-
-void GraphRun::StartProcesses() {
-  for (const std::string& process : ProcessNames()) {
-    std::vector<std::string> command{settings_.program_folder / ProgramOf(process)};
-    command.insert(
-        command.end(), settings_.child_arguments.begin(), settings_.child_arguments.end());
-    processes_.push_back(std::make_unique<host::ChildProcess>(
-        process, command, settings_.output_folder / (process + ".log")));
-  }
+  LogChannel(channels::kPmInfo);
+  LogChannel(channels::kPmOrders);
+  LogChannel(channels::kPmOutput);
+  LogChannel(channels::kPmHealth);
 }
 
 void GraphRun::StartFeeding() {
   phase_ = Phase::kFeeding;
   phase_start_us_ = feeding_start_us_ = runtime_.MonotonicUs();
   cpu_at_start_s_ = GraphCpuSeconds();
-  std::vector<std::string> command;
-  if (settings_.kind == InputKind::kPlayed) {
-    command = {settings_.program_folder / "clearway-play", "--input", settings_.input};
-    command.insert(
-        command.end(), settings_.child_arguments.begin(), settings_.child_arguments.end());
-  } else if (settings_.kind == InputKind::kLog) {
-    command = {
-        "lcm-logplayer", "-l", settings_.lcm_url, "-e", InputsOf(settings_), settings_.input};
-  } else {
-    return;
-  }
-  feeder_ =
-      std::make_unique<host::ChildProcess>("play", command, settings_.output_folder / "play.log");
+  deputy_.Start(kInputGroup);
 }
 
 // Statuses of a graph that somebody else runs on the same bus.
 void GraphRun::RefuseForeign(const status_t& status) const {
-  const bool is_ours =
-      std::any_of(processes_.begin(), processes_.end(), [&status](const auto& process) {
-        return process->pid() == status.pid;
-      });
-  if (is_ours) return;
+  if (deputy_.IsOwn(status)) return;
   throw std::runtime_error("another " + status.process + " (process " + std::to_string(status.pid) +
                            " on " + status.host +
                            ") runs on this bus: stop it, or use --channel-prefix or --lcm-url");
 }
 
 std::string GraphRun::WhoIsNotReady() const {
-  for (const std::string& process : ProcessNames()) {
-    const status_t* const status = statistics_.StatusOf(process);
-    if (status == nullptr) return process + " (nothing heard from it)";
-    if (status->ready == 0) return process + " (" + status->text + ")";
+  for (const std::string& process : ProcessNames(settings_)) {
+    if (!deputy_.IsReady(process)) return process + " (" + deputy_.StateOf(process) + ")";
   }
   if (settings_.wait_for_map && !HasMap()) return "the map on its way to the preprocessor";
   return {};
@@ -172,6 +124,7 @@ std::string GraphRun::WhoIsNotReady() const {
 
 bool GraphRun::HasMap() const {
   const status_t* const status = statistics_.StatusOf("preprocessor");
+  if (status == nullptr) return false;
   return std::any_of(
       status->counters.begin(), status->counters.end(), [](const counter_t& counter) {
         return counter.name == "map_epoch" && counter.value > 0;
@@ -179,20 +132,21 @@ bool GraphRun::HasMap() const {
 }
 
 void GraphRun::CheckForDeaths() {
-  for (const auto& process : processes_) {
-    if (const auto status = process->ExitStatus()) {
-      throw std::runtime_error(process->name() + " ended with status " + std::to_string(*status) +
-                               ":\n" + process->LastWords());
+  deputy_.CheckAlive();
+  for (const std::string& process : ProcessNames(settings_)) {
+    if (const auto status = deputy_.ExitStatusOf(process)) {
+      throw std::runtime_error(process + " ended with status " + std::to_string(*status) + ":\n" +
+                               deputy_.LastWordsOf(process));
     }
   }
 }
 
 bool GraphRun::IsInputOver() {
-  if (feeder_) {
-    const std::optional<int> status = feeder_->ExitStatus();
+  if (settings_.kind != InputKind::kLive) {
+    const std::optional<int> status = deputy_.ExitStatusOf(kFeeder);
     if (status.value_or(0) != 0) {
-      input_problem_ =
-          "the input ended with status " + std::to_string(*status) + ":\n" + feeder_->LastWords();
+      input_problem_ = "the input ended with status " + std::to_string(*status) + ":\n" +
+                       deputy_.LastWordsOf(kFeeder);
       if (statistics_.num_played() == 0) throw std::runtime_error(input_problem_);
     }
     return status.has_value();
@@ -201,10 +155,18 @@ bool GraphRun::IsInputOver() {
   return last_us && runtime_.MonotonicUs() - *last_us > kLiveSilenceUs;
 }
 
+bool GraphRun::IsFeederDown() const {
+  return deputy_.PidOf(kFeeder) == 0;
+}
+
+bool GraphRun::HasDrained() const {
+  return IsFeederDown() && statistics_.num_detected() >= statistics_.num_played();
+}
+
 void GraphRun::Supervise() {
-  if (phase_ == Phase::kDone) return;
+  if (phase_ == Phase::kStopping) return;
   CheckForDeaths();
-  for (const std::string& process : ProcessNames()) {
+  for (const std::string& process : ProcessNames(settings_)) {
     if (const status_t* const status = statistics_.StatusOf(process)) RefuseForeign(*status);
   }
   const std::int64_t now_us = runtime_.MonotonicUs();
@@ -224,26 +186,24 @@ void GraphRun::Supervise() {
           settings_.stop_after_s && static_cast<double>(phase_us) > *settings_.stop_after_s * 1e6;
       if (!time_is_up && !IsInputOver()) break;
       MeasureMachine();
-      if (time_is_up) feeder_.reset();
+      if (time_is_up) deputy_.Stop(kInputGroup);
       phase_ = Phase::kDraining;
       phase_start_us_ = now_us;
       break;
     }
     case Phase::kDraining:
-      if (statistics_.num_detected() >= statistics_.num_played() || phase_us > kDrainTimeoutUs) {
-        phase_ = Phase::kDone;
-        runtime_.Stop();
-      }
+      if (HasDrained() || phase_us > kDrainTimeoutUs) runtime_.Stop();
       break;
-    case Phase::kDone:
+    case Phase::kStopping:
       break;
   }
 }
 
 double GraphRun::GraphCpuSeconds() const {
   double sum_s = 0.0;
-  for (const auto& process : processes_)
-    sum_s += process->Use().value_or(host::ResourceUse{}).cpu_s;
+  for (const std::string& process : ProcessNames(settings_)) {
+    sum_s += host::UseOf(deputy_.PidOf(process)).value_or(host::ResourceUse{}).cpu_s;
+  }
   return sum_s;
 }
 
@@ -251,19 +211,33 @@ void GraphRun::MeasureMachine() {
   MachineUse use;
   const double elapsed_s = static_cast<double>(runtime_.MonotonicUs() - feeding_start_us_) * 1e-6;
   use.cpu_cores = (GraphCpuSeconds() - cpu_at_start_s_) / elapsed_s;
-  for (const auto& process : processes_) {
-    use.pss_mb += process->Use().value_or(host::ResourceUse{}).pss_mb;
+  for (const std::string& process : ProcessNames(settings_)) {
+    use.pss_mb += host::UseOf(deputy_.PidOf(process)).value_or(host::ResourceUse{}).pss_mb;
   }
   machine_use_ = use;
 }
 
 void GraphRun::StopProcesses() {
   if (phase_ == Phase::kFeeding && !machine_use_) MeasureMachine();
-  feeder_.reset();
-  for (const auto& process : processes_) process->Signal(SIGINT);
-  for (const auto& process : processes_) process->WaitOrKill(kStopTimeoutMs);
-  phase_ = Phase::kDone;
+  phase_ = Phase::kStopping;
+  deputy_.Stop(kInputGroup);
+  RunUntil([this] { return IsFeederDown(); });
+  deputy_.Stop(kGraphGroup);
+  RunUntil([this] {
+    const auto names = ProcessNames(settings_);
+    return std::all_of(names.begin(), names.end(), [this](const std::string& process) {
+      return deputy_.PidOf(process) == 0;
+    });
+  });
   runtime_.RunFor(kLastWordsUs);
+}
+
+// Also after a signal, which only ends the present step.
+void GraphRun::RunUntil(const std::function<bool()>& holds) {
+  const std::int64_t until_us = runtime_.MonotonicUs() + kStopTimeoutUs;
+  while (!holds() && !deputy_.has_ended() && runtime_.MonotonicUs() < until_us) {
+    runtime_.RunFor(kStepUs);
+  }
 }
 
 void GraphRun::ShowProgress() {

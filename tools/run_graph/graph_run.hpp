@@ -2,53 +2,30 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "common/host/child_process.hpp"
 #include "common/io/lcm_log.hpp"
 #include "common/process/live_runtime.hpp"
 #include "common/process/node.hpp"
+#include "tools/run_graph/own_deputy.hpp"
+#include "tools/run_graph/run_settings.hpp"
 #include "tools/run_graph/run_statistics.hpp"
 
 namespace clearway::run_graph {
 
-/// Where a run's scans come from.
-enum class InputKind {
-  kPlayed,  ///< A folder, list, file or scene, by clearway-play.
-  kLog,     ///< An LCM log, by lcm-logplayer; inputs only.
-  kLive,    ///< Whatever publishes LIDAR_POINTS.
-};
-
-/// What is run.
-struct RunSettings {
-  InputKind kind = InputKind::kPlayed;
-  std::filesystem::path input;               ///< Not for kLive.
-  std::filesystem::path program_folder;      ///< Where the programs are.
-  std::filesystem::path output_folder;       ///< For what the programs write to stderr.
-  std::vector<std::string> child_arguments;  ///< --config and what else every process gets.
-  std::string lcm_url;                       ///< Of the local bus, for lcm-logplayer.
-  std::string channel_prefix;
-  bool with_map_server = false;
-  bool wait_for_map = false;      ///< Feeding waits until the preprocessor has its map.
-  bool with_pose_source = false;  ///< POSE of a log is then not played.
-  std::optional<double> stop_after_s;
-  std::filesystem::path log;  ///< Everything is written to this LCM log; empty: nothing.
-  bool show_progress = true;
-};
-
-/// What the machine spent on the processes of the graph (without the player and this program).
+/// What the machine spent on the processes of the graph (without the player, the deputy and this
+/// program).
 struct MachineUse {
   double cpu_cores = 0.0;
   double pss_mb = 0.0;
 };
 
-/// Starts the processes of the graph as programs of their own, waits until they are ready, feeds
-/// them, listens, and ends them. Ends by itself when the input is over and its last scan has gone
-/// through, or after stop_after_s, or on SIGINT.
+/// Has a deputy of its own start the processes of the graph, waits until they are ready, feeds
+/// them, listens, and has them stopped. Ends by itself when the input is over and its last scan has
+/// gone through, or after stop_after_s, or on SIGINT.
 class GraphRun {
  public:
   GraphRun(process::LiveRuntime& runtime, process::Node& node, const RunSettings& settings);
@@ -64,13 +41,11 @@ class GraphRun {
   [[nodiscard]] const std::string& input_problem() const { return input_problem_; }
 
  private:
-  enum class Phase { kStarting, kFeeding, kDraining, kDone };
+  enum class Phase { kStarting, kFeeding, kDraining, kStopping };
 
   void Listen();
   template <typename Message>
   void LogChannel(const messages::Channel<Message>& channel);
-  [[nodiscard]] std::vector<std::string> ProcessNames() const;
-  void StartProcesses();
   void StartFeeding();
   void Supervise();
   [[nodiscard]] bool HasMap() const;
@@ -78,7 +53,10 @@ class GraphRun {
   void RefuseForeign(const status_t& status) const;
   [[nodiscard]] std::string WhoIsNotReady() const;
   [[nodiscard]] bool IsInputOver();
+  [[nodiscard]] bool IsFeederDown() const;
+  [[nodiscard]] bool HasDrained() const;
   void StopProcesses();
+  void RunUntil(const std::function<bool()>& holds);
   void MeasureMachine();
   [[nodiscard]] double GraphCpuSeconds() const;
   void ShowProgress();
@@ -88,8 +66,7 @@ class GraphRun {
   RunSettings settings_;
   RunStatistics statistics_;
   std::unique_ptr<io::LcmLogWriter> log_;
-  std::vector<std::unique_ptr<host::ChildProcess>> processes_;
-  std::unique_ptr<host::ChildProcess> feeder_;
+  OwnDeputy deputy_;
   Phase phase_ = Phase::kStarting;
   std::int64_t phase_start_us_ = 0;
   std::int64_t feeding_start_us_ = 0;

@@ -116,7 +116,7 @@ RunSettings SettingsOf(const Arguments& arguments, const graph::GraphConfig& con
   settings.program_folder = ProgramFolder();
   settings.output_folder = arguments.output;
   settings.child_arguments = ChildArguments(arguments.common);
-  settings.lcm_url = config.buses.local.url + "?ttl=0";
+  settings.buses = config.buses;
   settings.channel_prefix = arguments.common.channel_prefix;
   settings.with_map_server = !config.map_server.file.empty();
   settings.wait_for_map = settings.with_map_server && config.preprocessor.map_filter.enabled;
@@ -127,13 +127,24 @@ RunSettings SettingsOf(const Arguments& arguments, const graph::GraphConfig& con
   return settings;
 }
 
-// Those of an earlier run.
+// NAME.log, and NAME.log.1 and so on, which were full.
+bool IsLogOf(const std::string& process, const std::string& file) {
+  const std::string log = process + ".log";
+  return file == log || (file.starts_with(log + '.') &&
+                         file.find_first_not_of("0123456789", log.size() + 1) == file.npos);
+}
+
+// Those of an earlier run: deputies append to logs.
 void RemoveResults(const fs::path& folder) {
   fs::remove(folder / kPicture);
-  for (const char* process :
-       {"preprocessor", "clusterer", "stop_guard", "map_server", "pose_source", "play"}) {
-    fs::remove(folder / (std::string(process) + ".log"));
+  std::vector<fs::path> logs;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    for (const char* process :
+         {"preprocessor", "clusterer", "stop_guard", "map_server", "pose_source", "play"}) {
+      if (IsLogOf(process, entry.path().filename())) logs.push_back(entry.path());
+    }
   }
+  for (const fs::path& log : logs) fs::remove(log);
 }
 
 void Report(const Arguments& arguments, const graph::GraphConfig& config, const GraphRun& run) {
