@@ -72,7 +72,8 @@ class MapTest : public RunningGraphTest {
                                        "--set",
                                        "pose_source.mode=fixed"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return {arguments,
+    return {url_,
+            arguments,
             {"--input",
              SourceFolder() / "tests" / "support" / "free_room_scene.xml",
              "--scene-seconds",

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/core/guard/permit_watch.hpp"
 #include "tests/support/graph_listener.hpp"
 #include "tests/support/live_buses.hpp"
 #include "tests/support/running_graph.hpp"
@@ -31,7 +32,8 @@ class RunningGraphTest : public testing::Test {
   RunningGraphTest()
       : url_(TestUrl(NextPort())),
         listener_(url_),
-        graph_({"--config", SourceFolder() / "config" / "lab.xml", "--lcm-url", url_},
+        graph_(url_,
+               {"--config", SourceFolder() / "config" / "lab.xml", "--lcm-url", url_},
                {"--input",
                 SourceFolder() / "tests" / "support" / "free_room_scene.xml",
                 "--scene-seconds",
@@ -101,6 +103,69 @@ class RunningGraphTest : public testing::Test {
   static int NextPort() {
     static int port = 17200;
     return port++;
+  }
+};
+
+/// What is asked of a graph whose processes are killed or frozen.
+class KillTest : public RunningGraphTest {
+ protected:
+  // From the last slice's arrival to the last permit to move that followed it.
+  [[nodiscard]] std::int64_t MovedOnAfterTheLastSlice() const {
+    const std::int64_t slice_us = listener_.slices.back().arrival_us;
+    std::int64_t longest_us = 0;
+    for (const auto& permit : listener_.permits) {
+      if (!IsStop(permit.message)) longest_us = std::max(longest_us, permit.arrival_us - slice_us);
+    }
+    return longest_us;
+  }
+
+  // What the base may do at `time_us`, by all permits that had come by then.
+  [[nodiscard]] bool MayTheBaseMove(std::int64_t time_us) const {
+    core::PermitWatch watch;
+    for (const auto& permit : listener_.permits) {
+      if (permit.arrival_us > time_us) break;
+      watch.OnPermit(
+          permit.message.session, permit.message.sequence, permit.message.utime, permit.arrival_us);
+    }
+    return watch.IsValid(time_us);
+  }
+
+  // Of the permits that came in [from, to]: no one lets the vehicle go faster than `limit_mps`.
+  void ExpectCapped(std::int64_t from_us, std::int64_t to_us, double limit_mps) const {
+    for (const auto& permit : listener_.permits) {
+      if (permit.arrival_us < from_us || permit.arrival_us > to_us) continue;
+      EXPECT_LE(permit.message.forward_mps, limit_mps) << permit.message.text;
+    }
+  }
+
+  // A permit to move rests on a slice that is not older than its limits allow: lateness and
+  // silence each have one.
+  void ExpectEveryPermitRestsOnAFreshSlice() const {
+    std::map<std::pair<std::int64_t, std::int32_t>, std::int64_t> slice_us;
+    std::size_t next = 0;
+    for (const auto& permit : listener_.permits) {
+      for (;
+           next < listener_.slices.size() && listener_.slices[next].arrival_us <= permit.arrival_us;
+           ++next) {
+        const lidar_points_t& slice = listener_.slices[next].message;
+        slice_us[{slice.scan_id, slice.slice_index}] = listener_.slices[next].arrival_us;
+      }
+      if (IsStop(permit.message)) continue;
+      EXPECT_LE(permit.message.input_age_us, kLimit_us);
+      const auto slice = slice_us.find({permit.message.slice_scan_id, permit.message.slice_index});
+      if (slice == slice_us.end()) continue;  // Came before this test listened.
+      EXPECT_LE(permit.arrival_us - slice->second, 2 * kLimit_us + kTransport_us);
+    }
+  }
+
+  // The graph is whole again, with one session for the process that was started anew.
+  void ExpectWholeAgainWithANewSession(const std::string& process, std::int64_t old_session) {
+    const std::int64_t from_us = GraphListener::NowUs();
+    graph_.Start(process);
+    ASSERT_TRUE(AwaitWhole()) << Describe();
+    Report("restart_to_whole_ms", GraphListener::NowUs() - from_us);
+    ASSERT_TRUE(listener_.Await([&] { return SessionOf(process) != old_session; }));
+    ExpectEveryPermitRestsOnAFreshSlice();
   }
 };
 

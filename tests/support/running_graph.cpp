@@ -2,6 +2,7 @@
 #include "tests/support/running_graph.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -9,6 +10,8 @@
 #include <stdexcept>
 #include <sys/wait.h>
 #include <utility>
+
+#include "common/core/procman/exec_string.hpp"
 
 namespace clearway::test {
 namespace {
@@ -54,33 +57,97 @@ ProgramResult RunProgram(const std::vector<std::string>& command,
   return result;
 }
 
-RunningGraph::RunningGraph(std::vector<std::string> arguments,
+RunningGraph::RunningGraph(const std::string& url,
+                           std::vector<std::string> arguments,
                            std::vector<std::string> play_arguments,
                            std::filesystem::path folder)
-    : arguments_(std::move(arguments)),
+    : url_(url + "?ttl=0"),
+      arguments_(std::move(arguments)),
       play_arguments_(std::move(play_arguments)),
-      folder_(std::move(folder)) {}
+      folder_(std::move(folder)) {
+  peer_.emplace(url_);
+}
 
-void RunningGraph::Start(const std::string& name) {
-  std::vector<std::string> command{Program(name)};
-  command.insert(command.end(), arguments_.begin(), arguments_.end());
+void RunningGraph::StartDeputy() {
+  const std::vector<std::string> command{Program("deputy"),
+                                         "--id",
+                                         kDeputy,
+                                         "--lcm-url",
+                                         url_,
+                                         "--allow-any",
+                                         "--allow-root",
+                                         "--set",
+                                         "deputy.state_folder=" + (folder_ / "state").string(),
+                                         "--set",
+                                         "deputy.logs.folder=" + folder_.string()};
+  deputy_ = std::make_unique<host::ChildProcess>("deputy", command, folder_ / "deputy.log");
+}
+
+void RunningGraph::KillDeputy() {
+  deputy_->Signal(SIGKILL);
+  deputy_->WaitOrKill(10'000);
+}
+
+core::procman::DesiredCommand RunningGraph::CommandOf(const std::string& name) const {
+  std::string channel = name + "_STATUS";
+  for (char& c : channel) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  core::procman::ExecLine line{.environment = {{"CLEARWAY_STATUS_CHANNEL", channel}},
+                               .arguments = {Program(name)}};
+  line.arguments.insert(line.arguments.end(), arguments_.begin(), arguments_.end());
   if (name == "play") {
-    command.insert(command.end(), play_arguments_.begin(), play_arguments_.end());
+    line.arguments.emplace_back("--headless");
+    line.arguments.insert(line.arguments.end(), play_arguments_.begin(), play_arguments_.end());
   }
-  processes_[name] = std::make_unique<host::ChildProcess>(name, command, folder_ / (name + ".log"));
+  core::procman::DesiredCommand command = Wanted(name, core::procman::FormatExecLine(line));
+  command.spec.auto_respawn = respawns_;
+  const auto known = commands_.find(name);
+  command.run_id = known == commands_.end() ? 1 : known->second.run_id + 1;
+  return command;
 }
 
-void RunningGraph::StartAll() {
-  for (const char* name : {"stop_guard", "preprocessor", "clusterer", "play"}) Start(name);
+void RunningGraph::Order(const std::vector<std::string>& names) {
+  if (!deputy_) StartDeputy();
+  if (!peer_->AwaitDeputy(kDeputy)) {
+    throw std::runtime_error("no deputy:\n" + deputy_->LastWords());
+  }
+  for (const std::string& name : names) commands_[name] = CommandOf(name);
+  std::vector<core::procman::DesiredCommand> orders;
+  for (const auto& [name, command] : commands_) orders.push_back(command);
+  const auto all_run = [&] {
+    return std::all_of(names.begin(), names.end(), [this](const std::string& name) {
+      return PidOf(name) != 0 && peer_->Command(kDeputy, name).run_id == commands_.at(name).run_id;
+    });
+  };
+  // As a sheriff: again and again, since one may be lost.
+  for (int attempt = 0; attempt < 30; ++attempt) {
+    peer_->Order(kDeputy, orders);
+    if (peer_->Await(all_run, 1'000'000)) return;
+  }
+  throw std::runtime_error("does not start:\n" + deputy_->LastWords());
 }
 
-void RunningGraph::Kill(const std::string& name) {
-  process(name).Signal(SIGKILL);
-  process(name).WaitOrKill(10'000);
+std::int32_t RunningGraph::PidOf(const std::string& name) const {
+  return peer_->Command(kDeputy, name).pid;
 }
 
 void RunningGraph::Signal(const std::string& name, int signal) {
-  process(name).Signal(signal);
+  const std::int32_t pid = PidOf(name);
+  if (pid == 0) throw std::runtime_error(name + " does not run");
+  kill(pid, signal);
+}
+
+void RunningGraph::Kill(const std::string& name) {
+  const std::int32_t pid = PidOf(name);
+  Signal(name, SIGKILL);
+  if (!peer_->Await([&] { return PidOf(name) != pid; })) {
+    throw std::runtime_error("nobody told that " + name + " ended");
+  }
+}
+
+std::optional<int> RunningGraph::AwaitEnd(const std::string& name, std::int64_t timeout_us) {
+  if (!peer_->Await([&] { return PidOf(name) == 0; }, timeout_us)) return std::nullopt;
+  const int status = peer_->Command(kDeputy, name).exit_code;
+  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
 }  // namespace clearway::test
