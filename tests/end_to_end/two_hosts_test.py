@@ -23,7 +23,7 @@ import lcm_log  # noqa: E402
 INSIDE = "CLEARWAY_TWO_HOSTS_TEST"
 LOCAL = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304"
 SHARED = "udpm://239.255.76.67:7668?ttl=1&recv_buf_size=4194304"
-# How long each part is watched; `tools/two_hosts_study` watches longer.
+# How long each part is watched; longer for figures.
 WATCHED_S = float(os.environ.get("CLEARWAY_WATCHED_S", "8"))
 FREE, NO_DETECTIONS = 0, 3
 DEGRADED_MPS = 0.3  # StopGuardConfig's default.
@@ -175,18 +175,24 @@ class TwoHostsTest(unittest.TestCase):
     def report(self, name, figures):
         print(name, json.dumps(figures), flush=True)
 
+    def report_traffic(self, statistics_of_relay):
+        """What crossed since the statistics before."""
+        for channel in statistics_of_relay["channels"]:
+            print(f"  from {channel['from']} {channel['channel']}: {channel['messages_per_s']:.1f}/s, "
+                  f"{channel['mbit_per_s']:.4f} Mbit/s, at most "
+                  f"{channel['largest_message_bytes']} B", flush=True)
+
     def expect_path_a_as_before(self, before, after):
         self.assertGreater(after["per_s"], 0.95 * before["per_s"])
         self.assertLessEqual(after["stopped"], before["stopped"] + 0.01)
 
     def test_a_stage_moves_by_one_word_and_the_robot_lives_with_a_poor_network(self):
         self.move("clusterer", "robot")
-        self.sheriff("start", "everything")
+        self.sheriff("start", "input")
         self.await_permit(lambda permit: permit.reason == FREE)
         alone = self.watch()
         self.report("all on the robot", alone)
         self.assertEqual(self.statuses()["clusterer"]["deputy"], "robot")
-        self.assertEqual(alone["detections"]["messages_sent"], 0)
 
         with self.subTest("the clusterer moves"):
             self.move("clusterer", "laptop")
@@ -196,8 +202,10 @@ class TwoHostsTest(unittest.TestCase):
 
         with self.subTest("5 ms and 2 % of all frames lost"):
             self.tell_relay("delay-ms 5", "loss 0.02")
+            self.tell_relay("stats")
             poor = self.watch()
             self.report("clusterer on the laptop, 5 ms, 2 % loss", poor)
+            self.report_traffic(json.loads(self.tell_relay("stats")))
             points, detections = poor["obstacle_points"], poor["detections"]
             self.assertGreater(points["scans_sent"], 9 * WATCHED_S)
             # On average 98 % come; the bound leaves three standard deviations of so short a time.
@@ -233,9 +241,10 @@ class TwoHostsTest(unittest.TestCase):
             ports = {channel["udp_port"]
                      for channel in json.loads(self.tell_relay("stats"))["channels"]}
             self.assertEqual(ports, {7668})
+            # Of procman, orders and info are whole by protocol, however large.
             largest = max(channel["largest_message_bytes"] for channel
                           in json.loads(self.tell_relay("stats"))["channels"]
-                          if not channel["channel"].startswith("PM_"))
+                          if channel["channel"] not in ("PM_INFO", "PM_ORDERS"))
             self.assertLessEqual(largest, 1400)
 
         self.sheriff("stop", "everything")
