@@ -12,7 +12,6 @@ namespace {
 using core::procman::CommandView;
 using core::procman::DeployedCommand;
 using core::procman::DeputyView;
-using core::procman::ScriptRunner;
 using core::procman::Sheriff;
 using core::procman::Snapshot;
 
@@ -21,15 +20,10 @@ constexpr std::int64_t kDiscoverAgainUs = 200'000;
 constexpr int kDiscoveries = 3;
 // Long enough for a report and for the orders of another sheriff to come by themselves.
 constexpr std::int64_t kOnePeriodUs = 1'200'000;
-// After three reports that did not come a deputy counts as not there.
-constexpr std::int64_t kUnheardUs = 3'000'000;
 // Without a file nobody knows who is missing.
 constexpr std::int64_t kQuickLookUs = 500'000;
 // Health comes with the answer.
 constexpr std::int64_t kHealthAnswersUs = 300'000;
-// Orders that nobody waits for are sent three times.
-constexpr std::int64_t kRepeatUs = 100'000;
-constexpr int kRepeats = 2;
 constexpr const char* kNobodyHeard =
     "no deputy is heard: is one running, and is this its LCM address?";
 
@@ -116,7 +110,7 @@ void SheriffVerbRun::Listen() {
   }
   const std::string unheard = Unheard(NeededDeputies());
   if (!unheard.empty() && !request_.force && request_.verb != SheriffVerb::kStop) {
-    if (elapsed_us() >= kUnheardUs) {
+    if (elapsed_us() >= kDeputyUnheardUs) {
       Finish(kSheriffUnheard,
              unheard + "; nothing was started (--force starts what can be started)");
     }
@@ -236,67 +230,6 @@ void SheriffVerbRun::Answer() {
   } else {
     Finish(0, {});
   }
-}
-
-void SheriffVerbRun::Act() {
-  phase_ = Phase::kActing;
-  acted_us_ = runtime_.MonotonicUs();
-  process_.sheriff().SetMode(Sheriff::Mode::kCommand);
-  const core::procman::Script script =
-      request_.verb == SheriffVerb::kRun
-          ? *FindScript(*request_.deployment, request_.targets.front())
-          : ScriptFor(request_.verb, targets_, request_.waits);
-  process_.runner().Run(
-      script, {.timeout_us = request_.timeout_us, .force = request_.force}, acted_us_);
-  process_.Update();
-}
-
-void SheriffVerbRun::WatchScript() {
-  const std::int64_t now_us = runtime_.MonotonicUs();
-  const auto other = process_.sheriff().ActiveOther(now_us);
-  if (other && other->was_heard && !std::exchange(warned_of_other_, true)) {
-    printer_.error("sheriff " + Printable(other->id) + " gives orders too");
-  }
-  const ScriptRunner& runner = process_.runner();
-  switch (runner.state()) {
-    case ScriptRunner::State::kDone:
-      Finish(0, {});
-      return;
-    case ScriptRunner::State::kTimedOut:
-      Finish(kSheriffTimeout, runner.text());
-      return;
-    case ScriptRunner::State::kRunning:
-      break;
-    default:
-      Finish(kSheriffFailed, runner.text());
-      return;
-  }
-  // Nobody is left to wait for but deputies that are not there.
-  std::set<std::string> deputies;
-  for (const std::string& id : runner.awaited()) {
-    const auto view = process_.sheriff().View(id, now_us);
-    if (view) deputies.insert(view->deputy);
-  }
-  const bool is_any_heard = std::any_of(deputies.begin(), deputies.end(), [&](const auto& id) {
-    return process_.sheriff().IsHeard(id, now_us);
-  });
-  if (!deputies.empty() && !is_any_heard && now_us - acted_us_ >= kUnheardUs) {
-    Finish(kSheriffUnheard, Unheard(deputies) + "; the others have done what was asked");
-  }
-}
-
-void SheriffVerbRun::WatchUnwaited() {
-  if (runtime_.MonotonicUs() - acted_us_ < (repeats_ + 1) * kRepeatUs) return;
-  if (request_.verb == SheriffVerb::kRun &&
-      process_.runner().state() == ScriptRunner::State::kRunning) {
-    return;
-  }
-  if (repeats_ == kRepeats) {
-    Finish(0, {});
-    return;
-  }
-  ++repeats_;
-  process_.sheriff().RepeatOrders();
 }
 
 void SheriffVerbRun::Interrupt() {

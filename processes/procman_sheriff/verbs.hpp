@@ -13,6 +13,9 @@
 
 namespace clearway {
 
+/// After three reports that did not come a deputy counts as not there.
+inline constexpr std::int64_t kDeputyUnheardUs = 3'000'000;
+
 /// The user's machine, as far as a verb needs it.
 struct SheriffVerbHooks {
   /// The verb is done; called once, never from within the constructor.
@@ -53,6 +56,7 @@ class SheriffVerbRun {
   void Act();
   void WatchScript();
   void WatchUnwaited();
+  void PrintWhatIsSo();
   void PrintOutput(const CommandOutput& output);
   [[nodiscard]] bool FollowsOutputOf(const std::string& command);
   void PrintChange(const core::procman::Change& change);

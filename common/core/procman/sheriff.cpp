@@ -39,11 +39,7 @@ void Sheriff::Load(Deployment deployment, std::int64_t now_us) {
     command.position = i;
   }
   std::erase_if(commands_, [this](const auto& entry) {
-    const KnownCommand& command = entry.second;
-    return !command.is_in_file &&
-           std::none_of(deputies_.begin(), deputies_.end(), [&](const auto& d) {
-             return d.second.commands.contains(command.spec.id);
-           });
+    return !entry.second.is_in_file && !IsListed(entry.first);
   });
   for (auto& [id, deputy] : deputies_) {
     for (const auto& [command, reported] : deputy.commands) TakeOver(deputy, reported, now_us);
@@ -119,7 +115,7 @@ int Sheriff::Remove(const Target& target, std::int64_t now_us) {
     command.waits_to_restart.reset();
   });
   // Of what no deputy lists nothing is left to be done.
-  for (auto& [id, deputy] : deputies_) TakeWhatTheReportLacks(deputy);
+  for (auto& [id, deputy] : deputies_) TakeWhatTheReportLacks(deputy, now_us);
   std::erase_if(commands_, [this](const auto& entry) {
     return entry.second.is_removed && Find(entry.second.deputy) == nullptr;
   });

@@ -105,6 +105,8 @@ class Sheriff {
   struct Judgement {
     Status status = Status::kUnknown;
     std::string text;
+    /// The deputy's health is about to tell more: nothing for the history yet.
+    bool is_provisional = false;
   };
   // What concerns one copy of a command: where it is, as reported, and how its deputy sees it.
   struct Copy {
@@ -126,7 +128,8 @@ class Sheriff {
   // sheriff_intake.cpp
   [[nodiscard]] bool IsInScope(const std::string& deputy) const;
   void TakeOver(const KnownDeputy& deputy, const ReportedCommand& reported, std::int64_t now_us);
-  void TakeWhatTheReportLacks(KnownDeputy& deputy);
+  void TakeWhatTheReportLacks(KnownDeputy& deputy, std::int64_t now_us);
+  [[nodiscard]] bool IsListed(const std::string& command) const;
   void RefineByHealth(KnownDeputy& deputy, std::int64_t now_us);
   void Mirror(const DesiredCommand& desired, const KnownDeputy& deputy);
   [[nodiscard]] static bool HasTwoSenders(const KnownDeputy& deputy, std::int64_t now_us);

@@ -49,7 +49,7 @@ void Sheriff::OnForeignOrders(const Orders& orders, std::int64_t now_us) {
       command.is_mirrored = false;
       command.is_removed = deputy.commands.contains(id);
     }
-    TakeWhatTheReportLacks(deputy);
+    TakeWhatTheReportLacks(deputy, now_us);
   }
   NoteChanges(now_us, orders.utime);
 }

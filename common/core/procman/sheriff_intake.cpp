@@ -30,10 +30,10 @@ bool KnowsThisRun(const ReportedCommand& before,
                   const KnownDeputy& deputy) {
   const auto health = deputy.healths.find(report.spec.id);
   if (health == deputy.healths.end()) return false;
-  if (before.starts >= 0 && health->second.starts != before.starts) return true;
+  if (report.pid != 0) return before.starts >= 0 && health->second.starts != before.starts;
   const bool is_down = health->second.state != CommandState::kRunning &&
                        health->second.state != CommandState::kStopping;
-  return is_down && report.pid == 0 && before.report.pid != 0 && deputy.health_us > deputy.heard_us;
+  return is_down && before.report.pid != 0 && deputy.health_us > deputy.heard_us;
 }
 
 // What this report says of a command, and what the ones before it add.
@@ -41,21 +41,22 @@ ReportedCommand Follow(const ReportedCommand* before,
                        const CommandReport& report,
                        const KnownDeputy& deputy,
                        std::int64_t now_us) {
-  const std::int32_t starts = StartsOf(deputy, report.spec.id);
-  ReportedCommand next{.report = report, .starts = starts};
   if (before != nullptr && before->report.pid == report.pid &&
       before->report.run_id == report.run_id) {
-    next = *before;
-    next.report = report;
-    next.starts = starts;
-    return next;
+    ReportedCommand same = *before;
+    same.report = report;
+    return same;
   }
+  ReportedCommand next{.report = report};
   const bool is_same_run = before != nullptr && before->report.run_id == report.run_id;
   next.since_us = now_us;
   next.was_seen_down = before != nullptr || deputy.report.has_value();
   next.was_seen_up = report.pid != 0 || (is_same_run && before->was_seen_up);
   if (is_same_run) next.deaths = before->deaths + (before->report.pid != 0 ? 1 : 0);
   next.is_health_old = before != nullptr && !KnowsThisRun(*before, report, deputy);
+  next.starts = before != nullptr && (next.is_health_old || report.pid == 0)
+                    ? before->starts
+                    : StartsOf(deputy, report.spec.id);
   return next;
 }
 
@@ -102,7 +103,7 @@ void Sheriff::OnReport(const DeputyReport& report, std::int64_t now_us) {
     }
   }
   RefineByHealth(deputy, now_us);
-  TakeWhatTheReportLacks(deputy);
+  TakeWhatTheReportLacks(deputy, now_us);
   NoteChanges(now_us, report.utime);
 }
 
@@ -157,33 +158,40 @@ void Sheriff::TakeOver(const KnownDeputy& deputy,
   if (!deputy.health && is_down_for_good) command.force_quit = true;
 }
 
-void Sheriff::TakeWhatTheReportLacks(KnownDeputy& deputy) {
-  for (auto entry = commands_.begin(); entry != commands_.end();) {
-    KnownCommand& command = entry->second;
-    const bool is_listed = std::any_of(deputies_.begin(), deputies_.end(), [&](const auto& d) {
-      return d.second.commands.contains(entry->first);
-    });
-    const bool is_observed = mode_ == Mode::kObserve && !command.is_mirrored;
-    const bool is_gone = !is_listed && command.deputy == deputy.id &&
-                         (command.is_removed || (is_observed && !command.is_in_file));
-    if (!is_gone) {
-      ++entry;
-      continue;
+void Sheriff::TakeWhatTheReportLacks(KnownDeputy& deputy, std::int64_t now_us) {
+  std::vector<std::string> gone;
+  for (auto& [id, command] : commands_) {
+    if (command.deputy != deputy.id || deputy.commands.contains(id)) continue;
+    if (mode_ == Mode::kObserve) {
+      const bool is_unknown_here = command.is_removed || !command.is_mirrored;
+      command.is_removed = command.is_removed && !command.is_in_file;
+      if (is_unknown_here && !command.is_in_file) gone.push_back(id);
+    } else if (command.is_removed && !IsListed(id)) {
+      gone.push_back(id);
     }
-    if (mode_ == Mode::kObserve && command.is_in_file) {
-      command.is_removed = false;
-      ++entry;
-      continue;
-    }
+  }
+  for (const std::string& id : gone) {
+    const Status noted = commands_.at(id).noted.value_or(Status::kUnknown);
     Note({.utime = deputy.report ? deputy.report->utime : 0,
           .deputy = deputy.id,
-          .command = entry->first,
-          .from = std::string(WordsFor(command.noted.value_or(Status::kUnknown))),
+          .command = id,
+          .from = std::string(WordsFor(noted)),
           .to = {},
-          .before = command.noted.value_or(Status::kUnknown),
+          .before = noted,
           .text = "removed"});
-    entry = commands_.erase(entry);
+    commands_.erase(id);
+    // An observer follows what has moved.
+    for (const auto& [other, known] : deputies_) {
+      const auto listed = known.commands.find(id);
+      if (listed != known.commands.end()) TakeOver(known, listed->second, now_us);
+    }
   }
+}
+
+bool Sheriff::IsListed(const std::string& command) const {
+  return std::any_of(deputies_.begin(), deputies_.end(), [&](const auto& entry) {
+    return entry.second.commands.contains(command);
+  });
 }
 
 void Sheriff::OnHealth(const DeputyHealth& health, std::int64_t utime, std::int64_t now_us) {
@@ -196,7 +204,11 @@ void Sheriff::OnHealth(const DeputyHealth& health, std::int64_t utime, std::int6
   deputy.health_us = now_us;
   deputy.healths.clear();
   for (const CommandHealthReport& each : health.commands) deputy.healths[each.id] = each;
-  for (auto& [id, reported] : deputy.commands) reported.is_health_old = false;
+  for (auto& [id, reported] : deputy.commands) {
+    // The first one after a report is about the same run; later ones may be ahead of the reports.
+    if (reported.is_health_old || reported.starts < 0) reported.starts = StartsOf(deputy, id);
+    reported.is_health_old = false;
+  }
   RefineByHealth(deputy, now_us);
   NoteChanges(now_us, utime);
 }

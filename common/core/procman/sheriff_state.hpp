@@ -23,7 +23,7 @@ struct ReportedCommand {
   CommandReport report;
   /// The deputy's health is older than this run: not to be believed.
   bool is_health_old = false;
-  std::int32_t starts = -1;    ///< As its health told when this report came; -1: not told.
+  std::int32_t starts = -1;    ///< As its health counted in this run; -1: not told.
   bool was_seen_up = false;    ///< In this run id.
   bool was_seen_down = false;  ///< Before this process, so its start was watched.
   std::int64_t since_us = 0;   ///< When this pid was first seen.

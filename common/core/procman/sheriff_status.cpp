@@ -81,9 +81,11 @@ Sheriff::Copy Sheriff::CopyOn(const KnownDeputy* deputy,
   if (listed == deputy->commands.end()) return copy;
   copy.reported = &listed->second;
   const auto health = deputy->healths.find(command);
-  if (copy.is_told && health != deputy->healths.end() && !listed->second.is_health_old) {
-    copy.health = &health->second;
-  }
+  if (!copy.is_told || health == deputy->healths.end() || listed->second.is_health_old) return copy;
+  // The one of the two messages that came first is ahead of the other.
+  const bool is_up = health->second.state == CommandState::kRunning ||
+                     health->second.state == CommandState::kStopping;
+  if (is_up == (listed->second.report.pid != 0)) copy.health = &health->second;
   return copy;
 }
 
@@ -165,9 +167,11 @@ Sheriff::Judgement Sheriff::JudgeCopy(const KnownCommand& command,
       copy.is_told ? health == nullptr : now_us - copy.reported->since_us < kReferencePauseUs;
   if (!command.force_quit && report.spec.auto_respawn && copy.reported->was_seen_up &&
       starts_again) {
-    return {Status::kBackingOff, end};
+    return {Status::kBackingOff, end, copy.is_told};
   }
-  return {EndedWell(command, report) ? Status::kStopped : Status::kFailed, end};
+  return {EndedWell(command, report) ? Status::kStopped : Status::kFailed,
+          end,
+          copy.is_told && health == nullptr};
 }
 
 // It has a process and is to have it.
@@ -175,14 +179,13 @@ Sheriff::Judgement Sheriff::JudgeRunning(const Copy& copy) {
   if (!copy.is_told) return {Status::kRunning, {}};
   const auto last = copy.deputy->healths.find(copy.reported->report.spec.id);
   const CommandHealthReport* health = copy.health;
-  if (health == nullptr ||
-      (health->state != CommandState::kRunning && health->state != CommandState::kStopping)) {
+  if (health == nullptr) {
     // The report was quicker than the health of this run: it is not known to be ready, unless
     // readiness was never asked of it.
     const bool counts_as_ready = last != copy.deputy->healths.end() && last->second.starts > 0 &&
                                  last->second.health == CommandHealth::kNotExpected &&
                                  last->second.state == CommandState::kRunning;
-    return {counts_as_ready ? Status::kRunning : Status::kGettingReady, {}};
+    return {counts_as_ready ? Status::kRunning : Status::kGettingReady, {}, !counts_as_ready};
   }
   if (health->state == CommandState::kStopping) return {Status::kStopping, health->text};
   if (health->health == CommandHealth::kNotReady) return {Status::kGettingReady, health->text};
@@ -212,6 +215,7 @@ void Sheriff::NoteChanges(std::int64_t now_us, std::optional<std::int64_t> utime
   }
   for (auto& [id, command] : commands_) {
     Judgement judgement = Judge(command, now_us);
+    if (judgement.is_provisional) continue;
     const Status before = command.noted.value_or(Status::kUnknown);
     command.noted = judgement.status;
     if (judgement.status == before) continue;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a sheriff shows of deputies that tell their commands' health, and of those that do not.
+#include <algorithm>
 #include <random>
 #include <string>
 #include <vector>
@@ -95,6 +96,38 @@ TEST_P(SheriffStatusTest, TroubleIsCalledByItsName) {
   EXPECT_EQ(snapshot.groups.front().trouble, 4);
   bed.Run(120'000'000);
   EXPECT_EQ(bed.StatusOf(*sheriff, "loop"), Status::kGaveUp);
+}
+
+// Report and health are two messages: what only one of them shows is not told as news.
+TEST_P(SheriffStatusTest, TheHistoryHasNoStepsBetweenTwoMessages) {
+  Start({Deployed("run", "own"),
+         Deployed("forbidden", "own", "forbidden"),
+         Deployed("loop", "own", "end 1 300", "", true)});
+  bed.Run(900'000);
+
+  EXPECT_EQ(Way("run"), (std::vector<std::string>{"Stopped", "Starting", "Running"}));
+  EXPECT_EQ(Way("forbidden"), (std::vector<std::string>{"Stopped", "Starting", "Refused"}));
+  EXPECT_EQ(Way("loop"),
+            (std::vector<std::string>{
+                "Stopped", "Starting", "Running", "Backing off", "Running", "Backing off"}));
+}
+
+TEST_P(SheriffStatusTest, AnObserverFollowsWhatMoves) {
+  bed.AddOwn("other");
+  Sheriff& observer = bed.AddSheriff("watches", Sheriff::Mode::kObserve);
+  Start({Deployed("a", "own")});
+  bed.Run(1'000'000);
+  sheriff->Load(Deploying({Deployed("a", "other")}), bed.now_us());
+  sheriff->Start(Everything(), bed.now_us());
+  bed.Run(1'000'000);
+
+  const auto view = observer.View("a", bed.now_us());
+  EXPECT_EQ(view->deputy, "other");
+  EXPECT_EQ(view->status, Status::kRunning);
+  EXPECT_TRUE(
+      std::any_of(observer.history().begin(), observer.history().end(), [](const Change& c) {
+        return c.deputy == "own" && c.command == "a" && c.to.empty();
+      }));
 }
 
 TEST_P(SheriffStatusTest, TheDeputysOwnTimersNeedNoOrders) {
