@@ -148,8 +148,12 @@ int Show(const Arguments& arguments) {
   if (arguments.request.deployment) {
     process.sheriff().Load(*arguments.request.deployment, runtime.MonotonicUs());
   }
+  const auto start = observes ? screen::ScreenStart::kObserve : screen::ScreenStart::kCommand;
   return screen::RunScreen(
-      process, runtime, observes ? screen::ScreenStart::kObserve : screen::ScreenStart::kCommand);
+      process,
+      runtime,
+      {.start = start,
+       .script = {.timeout_us = arguments.request.timeout_us, .force = arguments.request.force}});
 }
 
 int Live(const Arguments& arguments) {

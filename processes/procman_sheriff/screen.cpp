@@ -2,16 +2,15 @@
 #include "processes/procman_sheriff/screen.hpp"
 
 #include <algorithm>
-#include <array>
 #include <csignal>
 #include <cstdio>
-#include <ctime>
 #include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
 
 #include "processes/procman_sheriff/screen_log.hpp"
+#include "processes/procman_sheriff/screen_messages.hpp"
 #include "processes/procman_sheriff/screen_model.hpp"
 #include "processes/procman_sheriff/screen_terminal.hpp"
 #include "processes/procman_sheriff/screen_text.hpp"
@@ -32,39 +31,9 @@ constexpr std::int64_t kOnePeriodUs = 1'200'000;
 // A deputy tells for 3 s of orders that it obeyed: whoever gave them may be done.
 constexpr std::int64_t kOthersAreForgottenUs = 4'500'000;
 
-std::string Clock(std::int64_t utime) {
-  const auto seconds = static_cast<std::time_t>(utime / 1'000'000);
-  std::tm local{};
-  localtime_r(&seconds, &local);
-  std::array<char, 16> text{};
-  std::strftime(text.data(), text.size(), "%H:%M:%S", &local);
-  return text.data();
-}
-
-std::string Sentence(const Change& change) {
-  std::string text = change.kind == Change::Kind::kCommand ? change.command : change.deputy;
-  if (change.kind == Change::Kind::kDeputy) text.insert(0, "host ");
-  if (change.kind == Change::Kind::kSheriff) text = "the orders of " + text + " come from";
-  text += ": " + change.from + (change.from.empty() ? "" : " -> ") +
-          (change.to.empty() ? "gone" : change.to);
-  return change.text.empty() ? text : text + ": " + change.text;
-}
-
-std::string NameOf(const core::procman::Target& target) {
-  switch (target.kind) {
-    case core::procman::Target::Kind::kCommand:
-      return target.name;
-    case core::procman::Target::Kind::kGroup:
-      return "group " + target.name;
-    case core::procman::Target::Kind::kEverything:
-      break;
-  }
-  return "everything";
-}
-
 class Screen {
  public:
-  Screen(SheriffProcess& process, process::LiveRuntime& runtime, ScreenStart start);
+  Screen(SheriffProcess& process, process::LiveRuntime& runtime, const ScreenSettings& settings);
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
   ~Screen();
@@ -94,6 +63,7 @@ class Screen {
 
   SheriffProcess& process_;
   process::LiveRuntime& runtime_;
+  ScriptRunner::Options script_options_;
   bool is_looking_;
   std::int64_t began_us_;
   OutputStore output_;
@@ -110,10 +80,13 @@ class Screen {
   Mark mark_;
 };
 
-Screen::Screen(SheriffProcess& process, process::LiveRuntime& runtime, ScreenStart start)
+Screen::Screen(SheriffProcess& process,
+               process::LiveRuntime& runtime,
+               const ScreenSettings& settings)
     : process_(process),
       runtime_(runtime),
-      is_looking_(start == ScreenStart::kCommand),
+      script_options_(settings.script),
+      is_looking_(settings.start == ScreenStart::kCommand),
       began_us_(runtime.MonotonicUs()),
       log_(runtime, [this](const std::string& line) {
         messages_.Add(line + "\n");
@@ -178,7 +151,7 @@ void Screen::Do(const Intent& intent) {
       });
       if (found == scripts.end()) return;
       script_began_us_ = now_us;
-      process_.runner().Run(*found, {}, now_us);
+      process_.runner().Run(*found, script_options_, now_us);
       break;
     }
     case Intent::Kind::kAbortScript:
@@ -203,22 +176,14 @@ void Screen::Order(const Intent& intent) {
   Sheriff& sheriff = process_.sheriff();
   const std::int64_t now_us = runtime_.MonotonicUs();
   int commands = 0;
-  std::string what;
   if (intent.kind == Intent::Kind::kStart) {
     commands = sheriff.Start(intent.target, now_us, intent.force);
-    what = "start ";
   } else if (intent.kind == Intent::Kind::kStop) {
     commands = sheriff.Stop(intent.target, now_us);
-    what = "stop ";
   } else {
     commands = sheriff.Restart(intent.target, now_us, intent.force);
-    what = "restart ";
   }
-  what += NameOf(intent.target);
-  if (intent.target.kind != core::procman::Target::Kind::kCommand) {
-    what += " (" + std::to_string(commands) + (commands == 1 ? " command)" : " commands)");
-  }
-  Note(what);
+  Note(OrderInWords(intent, commands));
 }
 
 void Screen::Note(const std::string& text) {
@@ -228,7 +193,7 @@ void Screen::Note(const std::string& text) {
 
 void Screen::OnChange(const Change& change) {
   const std::string clock = Clock(runtime_.UtimeNow());
-  messages_.Add(clock + " " + Sentence(change) + "\n");
+  messages_.Add(clock + " " + ChangeInWords(change) + "\n");
   if (IsWorthAMark(change)) {
     // Between the lines of the command itself: which run wrote what.
     std::string text = "---- " + clock + " " + change.to;
@@ -337,8 +302,10 @@ ScriptProgress Screen::Progress() {
 
 }  // namespace
 
-int RunScreen(SheriffProcess& process, process::LiveRuntime& runtime, ScreenStart start) {
-  Screen(process, runtime, start).Run();
+int RunScreen(SheriffProcess& process,
+              process::LiveRuntime& runtime,
+              const ScreenSettings& settings) {
+  Screen(process, runtime, settings).Run();
   const auto snapshot = process.sheriff().Look(runtime.MonotonicUs());
   const int up = snapshot.groups.empty() ? 0 : snapshot.groups.front().up;
   std::printf("clearway-sheriff: left; %d of %d commands go on running\n",

@@ -13,6 +13,11 @@ enum class ScreenStart {
   kCommand,
 };
 
+struct ScreenSettings {
+  ScreenStart start = ScreenStart::kCommand;
+  core::procman::ScriptRunner::Options script;  ///< How scripts are run.
+};
+
 /// Shows the sheriff on the whole terminal of stdin and stdout and carries out what is typed, until
 /// somebody quits, a signal asks to end or the terminal is gone. What runs goes on. Takes the
 /// process's OnChange, OnOutput and OnUpdate and the runtime's OnSignal. Throws std::runtime_error
@@ -20,6 +25,6 @@ enum class ScreenStart {
 /// @pre the process is an observer and takes output; the runtime is the process's.
 [[nodiscard]] int RunScreen(SheriffProcess& process,
                             process::LiveRuntime& runtime,
-                            ScreenStart start);
+                            const ScreenSettings& settings);
 
 }  // namespace clearway::screen

@@ -83,6 +83,12 @@ struct ScreenRows {
   int help_top = 0;  ///< The most that the help can be scrolled.
 };
 
+/// Where a key leads from `from` in a list of `size` > 0 lines of which `page` are shown.
+[[nodiscard]] std::size_t MovedInList(std::size_t from,
+                                      const KeyPress& key,
+                                      std::size_t size,
+                                      int page);
+
 /// What a user of the full-screen view sees and does: selection, mode, scrolling, questions. Knows
 /// no terminal, no sheriff and no clock. Each key changes the state and may return an intent, which
 /// is the caller's to carry out. Not for several threads.

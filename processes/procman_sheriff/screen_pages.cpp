@@ -57,6 +57,17 @@ Style StyleOfLine(const OutputLines::Line& line) {
   return line.is_mark ? Style::kDim : Style::kPlain;
 }
 
+// The command without the settings of its environment that stand before it.
+std::string_view ProgramOf(std::string_view exec) {
+  while (true) {
+    const std::string_view word = exec.substr(0, exec.find(' '));
+    const bool is_setting = word.find('=') != std::string_view::npos &&
+                            word.find_first_of("'\"\\") == std::string_view::npos;
+    if (!is_setting || word.size() == exec.size()) return exec;
+    exec.remove_prefix(word.size() + 1);
+  }
+}
+
 std::string SubjectTitle(const ScreenModel& model) {
   const CommandView* command = model.Subject();
   if (command == nullptr) return "MESSAGES";
@@ -64,7 +75,7 @@ std::string SubjectTitle(const ScreenModel& model) {
   if (command->dropped_output_bytes > 0) {
     title += ", without " + BytesInWords(command->dropped_output_bytes) + " that were too much";
   }
-  return title + ": " + command->exec;
+  return title + ": " + std::string(ProgramOf(command->exec));
 }
 
 Line NoLines(const ScreenModel& model, int width) {

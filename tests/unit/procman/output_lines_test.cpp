@@ -79,7 +79,10 @@ TEST(OutputLines, IsTheSameHoweverTheBytesAreCut) {
 }
 
 TEST(OutputLines, ALongLineGoesOnInTheNext) {
-  const std::vector<std::string> lines = LinesOf(std::string(1000, 'x') + "\ny");
+  std::string bytes(1000, 'x');
+  bytes += "\ny";
+
+  const std::vector<std::string> lines = LinesOf(bytes);
 
   EXPECT_THAT(
       lines, ElementsAre(std::string(400, 'x'), std::string(400, 'x'), std::string(200, 'x'), "y"));

@@ -227,6 +227,15 @@ TEST(ScreenLayout, MoreRoomShowsHostAndAge) {
   EXPECT_THAT(bed.Text(), HasSubstr("preprocessor Running       rig"));
 }
 
+TEST(ScreenLayout, TheOutputIsNamedByItsProgramWithoutSettings) {
+  ScreenContent content = SmallRobot();
+  content.snapshot.commands[2].exec = "LEVEL=3 URL=udpm://1?ttl=0 clusterer --set a=b";
+  ScreenBed bed(content);
+  bed.Select("clusterer");
+
+  EXPECT_THAT(bed.Text(), HasSubstr("OUTPUT of clusterer on rig: clusterer --set a=b\n"));
+}
+
 TEST(ScreenLayout, LongOutputGoesOnInTheNextRow) {
   ScreenBed bed;
   bed.output.Of("clusterer").Add("begin " + std::string(100, 'x') + " end\n");
