@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+
 #include <clearway/deputy_health_t.hpp>
 #include <clearway/detections_t.hpp>
 #include <clearway/drive_command_t.hpp>
@@ -57,6 +59,15 @@ inline constexpr Channel<status_t> kClustererStatus{"CLUSTERER_STATUS", BusId::k
 inline constexpr Channel<status_t> kStopGuardStatus{"STOP_GUARD_STATUS", BusId::kShared};
 inline constexpr Channel<status_t> kMapServerStatus{"MAP_SERVER_STATUS", BusId::kShared};
 inline constexpr Channel<status_t> kPoseSourceStatus{"POSE_SOURCE_STATUS", BusId::kShared};
+
+/// All of them, for who looks at all processes.
+inline constexpr std::array kAllStatuses{kPlayStatus,
+                                         kRunStatus,
+                                         kPreprocessorStatus,
+                                         kClustererStatus,
+                                         kStopGuardStatus,
+                                         kMapServerStatus,
+                                         kPoseSourceStatus};
 
 inline constexpr Channel<procman_lcm::deputy_info_t> kPmInfo{"PM_INFO", BusId::kShared};
 inline constexpr Channel<procman_lcm::orders_t> kPmOrders{"PM_ORDERS", BusId::kShared};

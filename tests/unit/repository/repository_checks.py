@@ -139,6 +139,13 @@ class MessageTableTest(unittest.TestCase):
         self.assertEqual(len(self.channels), header.count("inline constexpr Channel<"))
         self.assertGreater(len(self.channels), 20)
 
+    def test_the_list_of_statuses_has_them_all(self):
+        header = (ROOT / "common/messages/channels.hpp").read_text(encoding="utf-8")
+        declared = re.findall(r"Channel<status_t> (\w+)\{", header)
+        listed = re.search(r"kAllStatuses\{([^}]*)\}", header).group(1)
+
+        self.assertEqual(re.findall(r"\w+", listed), declared)
+
     def test_every_channel_is_in_the_table_with_its_bus_and_type(self):
         for name, (bus, type_name) in self.channels.items():
             with self.subTest(channel=name):
