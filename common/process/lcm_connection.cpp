@@ -39,11 +39,6 @@ int GrantableBufferBytes(int wanted) {
   return std::min(wanted, limit);
 }
 
-std::string FullUrl(const BusConfig& config) {
-  return config.url + "?ttl=" + std::to_string(config.ttl) +
-         "&recv_buf_size=" + std::to_string(GrantableBufferBytes(config.receive_buffer_bytes));
-}
-
 sockaddr_in GroupOf(const std::string& url) {
   const std::size_t begin = std::strlen("udpm://");
   sockaddr_in address{};
@@ -91,6 +86,11 @@ std::int64_t BufferOfSocket(int fd, int port) {
 }
 
 }  // namespace
+
+std::string FullUrl(const BusConfig& config) {
+  return config.url + "?ttl=" + std::to_string(config.ttl) +
+         "&recv_buf_size=" + std::to_string(GrantableBufferBytes(config.receive_buffer_bytes));
+}
 
 LcmConnection::LcmConnection(const BusConfig& config, MissingNetwork missing_network)
     : config_(config),

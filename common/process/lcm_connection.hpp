@@ -18,6 +18,9 @@ namespace clearway::process {
 
 enum class MissingNetwork;
 
+/// The address as LCM takes it, with the buffer that the kernel will grant.
+[[nodiscard]] std::string FullUrl(const BusConfig& config);
+
 /// One LCM object. Handlers may throw: the exception is kept while LCM's C code unwinds and leaves
 /// through HandleOne().
 class LcmConnection {
