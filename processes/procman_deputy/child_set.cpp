@@ -37,12 +37,6 @@ std::optional<std::string> VariableOf(const std::string& name) {
   return value == nullptr ? std::nullopt : std::optional<std::string>(value);
 }
 
-// As execvp() looks, but beside this program first: what belongs together is found together.
-std::string SearchPath() {
-  const auto own = std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
-  return own + ':' + VariableOf("PATH").value_or("/usr/local/bin:/usr/bin:/bin");
-}
-
 const std::string* SettingOf(const ExecLine& line, std::string_view name) {
   const std::string* value = nullptr;
   for (const auto& [key, text] : line.environment) {
@@ -71,6 +65,11 @@ bool IsEnded(const host::ProcessEntry& process) {
 }
 
 }  // namespace
+
+std::string SearchPath() {
+  const auto own = std::filesystem::read_symlink("/proc/self/exe").parent_path().string();
+  return own + ':' + VariableOf("PATH").value_or("/usr/local/bin:/usr/bin:/bin");
+}
 
 ChildSet::ChildSet(process::LiveRuntime& runtime,
                    std::optional<core::procman::AllowList> allowed,

@@ -27,6 +27,10 @@ inline constexpr char kCommandVariable[] = "CLEARWAY_COMMAND";
 inline constexpr char kStatusChannelVariable[] = "CLEARWAY_STATUS_CHANNEL";
 inline constexpr char kRestartUnhealthyVariable[] = "CLEARWAY_RESTART_UNHEALTHY";
 
+/// Where programs are looked for: as execvp() looks, but beside this program first, so that what
+/// belongs together is found together.
+[[nodiscard]] std::string SearchPath();
+
 /// Processes of this host, each a session of its own on a terminal of its own. What a command
 /// starts is watched, too, wherever it hides: by descent, by session, by its environment, and since
 /// orphans become this process's children. None of it outlives its command.
