@@ -182,7 +182,7 @@ class HostsTest(unittest.TestCase):
             said = (self.state / f"{name}.deputy.log").read_text(encoding="utf-8")
             self.assertEqual(
                 said.splitlines()[0],
-                f"{name}: --id {name} --lcm-url udpm://239.255.76.68:7668?ttl=1 --allow-any "
+                f"{name}: --id {name} --lcm-url udpm://239.255.76.67:7668?ttl=1 --allow-any "
                 "--allow-root --extra word")
             self.assertIn("ended", said)
 
