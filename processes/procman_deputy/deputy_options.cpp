@@ -49,7 +49,8 @@ void AddDeputyOptions(CLI::App& app, DeputyOptions& options) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("-i,--id", options.id, "Name of this deputy; without it the host's name")
       ->type_name("ID");
-  app.add_option("-u,--lcm-url,--lcmurl", options.lcm_url, "udpm://GROUP:PORT?ttl=N")->type_name("URL");
+  app.add_option("-u,--lcm-url,--lcmurl", options.lcm_url, "udpm://GROUP:PORT?ttl=N")
+      ->type_name("URL");
   app.add_option("--channel-prefix", options.channel_prefix, "Put before every channel name")
       ->type_name("TEXT");
   app.add_option("-l,--log", options.log_file, "The deputy's own messages go to this file")

@@ -78,7 +78,8 @@ TEST_F(DeputyTest, EnvironmentAssignmentsReachTheChildAndVariablesAreExpanded) {
 TEST_F(DeputyTest, ChildrenHaveATerminalAndNoOtherDescriptors) {
   StartDeputyAndAwait("d");
 
-  peer_.Order("d", {Wanted("a", "sh -c 'test -t 1 && echo terminal; ls -1 /proc/self/fd; echo end'")});
+  peer_.Order("d",
+              {Wanted("a", "sh -c 'test -t 1 && echo terminal; ls -1 /proc/self/fd; echo end'")});
 
   ASSERT_TRUE(AwaitOutput("a", "end\n"));
   EXPECT_THAT(OutputOf("a"), HasSubstr("terminal\n0\n1\n2\n3\nend\n")) << "3 is ls's own";

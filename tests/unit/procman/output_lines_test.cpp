@@ -141,7 +141,8 @@ TEST(OutputStore, ForgetsTheCommandThatWasSilentForLongest) {
   OutputStore store;
   store.Of("first").Add("a");
   store.Of("second").Add("b");
-  for (std::size_t i = 0; i + 2 < OutputStore::kMaxCommands; ++i) store.Of(std::to_string(i)).Add("x");
+  for (std::size_t i = 0; i + 2 < OutputStore::kMaxCommands; ++i)
+    store.Of(std::to_string(i)).Add("x");
   store.Of("first").Add("a");
 
   store.Of("one more").Add("c");

@@ -176,8 +176,7 @@ TEST(ScreenLayout, HostsInTroubleHaveALineEvenWhenNotAllHave) {
   EXPECT_THAT(bed.Text(), HasSubstr("config differs: bbbbbbbb"));
   EXPECT_THAT(bed.Text(), HasSubstr("and 17 more: all well"));
   bed.size = {80, 12};
-  EXPECT_THAT(bed.Text(),
-              HasSubstr("hosts: 18 of 20 well  ! h17 NEVER HEARD  ! h18 config"));
+  EXPECT_THAT(bed.Text(), HasSubstr("hosts: 18 of 20 well  ! h17 NEVER HEARD  ! h18 config"));
 }
 
 TEST(ScreenLayout, OneOfTwoHostsDiffersFromTheOther) {
