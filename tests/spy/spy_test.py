@@ -27,7 +27,9 @@ TYPE_OF = {
     "LIDAR_POINTS": "lidar_points_t", "OBSTACLE_POINTS": "obstacle_points_t", "FLOOR": "floor_t",
     "DETECTIONS": "detections_t", "DRIVE_PERMIT": "drive_permit_t",
     "PREPROCESSOR_STATUS": "status_t", "CLUSTERER_STATUS": "status_t",
-    "STOP_GUARD_STATUS": "status_t", "PLAY_STATUS": "status_t", "RUN_STATUS": "status_t"}
+    "STOP_GUARD_STATUS": "status_t", "PLAY_STATUS": "status_t", "RUN_STATUS": "status_t",
+    "PM_INFO": "deputy_info_t", "PM_ORDERS": "orders_t", "PM_OUTPUT": "output_t",
+    "PM_DISCOVER": "discovery_t", "PM_HEALTH": "deputy_health_t"}
 
 
 def what_is_missing():
