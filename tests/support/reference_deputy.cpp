@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <set>
 #include <sstream>
 
 namespace clearway::test {
@@ -21,11 +22,10 @@ void ReferenceDeputy::TakeOrders(const core::procman::Orders& orders,
                                  std::int64_t now_us,
                                  std::int64_t utime) {
   if (orders.deputy_id != id_ || utime - orders.utime > kOldestOrdersUs) return;
+  std::set<std::string> ordered;
+  for (const DesiredCommand& desired : orders.commands) ordered.insert(desired.spec.id);
   for (auto& [id, command] : commands_) {
-    const bool is_ordered = std::any_of(orders.commands.begin(),
-                                        orders.commands.end(),
-                                        [&](const DesiredCommand& d) { return d.spec.id == id; });
-    if (is_ordered) continue;
+    if (ordered.contains(id)) continue;
     command.is_removed = true;
     command.should_run = false;
     is_changed_ = true;
