@@ -49,7 +49,7 @@ std::string Aligned(const std::vector<Row>& rows) {
 
 std::string Format(const char* format, double value) {
   std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), format, value);
+  (void)std::snprintf(text.data(), text.size(), format, value);
   return text.data();
 }
 
@@ -146,9 +146,9 @@ std::string IsoTime(std::int64_t utime) {
   std::tm fields{};
   if (utime < 0 || gmtime_r(&seconds, &fields) == nullptr) return std::to_string(utime);
   std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &fields);
+  (void)std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &fields);
   std::array<char, 8> fraction{};
-  std::snprintf(
+  (void)std::snprintf(
       fraction.data(), fraction.size(), ".%03d", static_cast<int>(utime % kSecondUs / 1000));
   return std::string(text.data()) + fraction.data() + "Z";
 }

@@ -128,6 +128,8 @@ class Sheriff {
   // sheriff_intake.cpp
   [[nodiscard]] bool IsInScope(const std::string& deputy) const;
   void TakeOver(const KnownDeputy& deputy, const ReportedCommand& reported, std::int64_t now_us);
+  void TakeCommands(KnownDeputy& deputy, const DeputyReport& report, std::int64_t now_us);
+  void TakeRunId(const KnownDeputy& deputy, const ReportedCommand& reported, std::int64_t now_us);
   void TakeWhatTheReportLacks(KnownDeputy& deputy, std::int64_t now_us);
   [[nodiscard]] bool IsListed(const std::string& command) const;
   void RefineByHealth(KnownDeputy& deputy, std::int64_t now_us);
@@ -142,13 +144,16 @@ class Sheriff {
 
   // sheriff_status.cpp
   [[nodiscard]] Judgement Judge(const KnownCommand& command, std::int64_t now_us) const;
-  [[nodiscard]] Judgement JudgeCopy(const KnownCommand& command,
-                                    const Copy& copy,
-                                    std::int64_t now_us) const;
+  [[nodiscard]] static Judgement JudgeCopy(const KnownCommand& command,
+                                           const Copy& copy,
+                                           std::int64_t now_us);
+  [[nodiscard]] static Judgement JudgeEnded(const KnownCommand& command,
+                                            const Copy& copy,
+                                            std::int64_t now_us);
   [[nodiscard]] static Judgement JudgeRunning(const Copy& copy);
-  [[nodiscard]] Copy CopyOn(const KnownDeputy* deputy,
-                            const std::string& command,
-                            std::int64_t now_us) const;
+  [[nodiscard]] static Copy CopyOn(const KnownDeputy* deputy,
+                                   const std::string& command,
+                                   std::int64_t now_us);
   [[nodiscard]] const KnownDeputy* Elsewhere(const KnownCommand& command) const;
   [[nodiscard]] const KnownDeputy* Find(const std::string& deputy) const;
   void NoteChanges(std::int64_t now_us, std::optional<std::int64_t> utime = std::nullopt);
@@ -156,7 +161,7 @@ class Sheriff {
 
   // sheriff_look.cpp
   [[nodiscard]] CommandView ViewOf(const KnownCommand& command, std::int64_t now_us) const;
-  [[nodiscard]] DeputyView ViewOf(const std::string& deputy, std::int64_t now_us) const;
+  [[nodiscard]] DeputyView ViewOf(const std::string& id, std::int64_t now_us) const;
   [[nodiscard]] std::vector<const KnownCommand*> InOrder() const;
   [[nodiscard]] static bool IsSettled(const KnownCommand& command,
                                       const Copy& copy,

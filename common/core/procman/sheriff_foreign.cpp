@@ -9,7 +9,6 @@
 namespace clearway::core::procman {
 namespace {
 
-constexpr std::int64_t kOrdersActiveUs = 3'000'000;
 constexpr std::size_t kMaxSheriffs = 64;
 
 }  // namespace

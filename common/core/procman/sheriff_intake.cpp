@@ -78,6 +78,29 @@ void Sheriff::OnReport(const DeputyReport& report, std::int64_t now_us) {
     deputy.stamps_back = now_us - deputy.stamp_back_us < kTwoSendersUs ? deputy.stamps_back + 1 : 1;
     deputy.stamp_back_us = now_us;
   }
+  TakeCommands(deputy, report, now_us);
+  deputy.report = report;
+  deputy.report->commands.clear();
+  deputy.heard_us = now_us;
+  // Whoever gave the orders that an observer knows has gone; others may come unheard.
+  if (now_us - deputy.orders_us > kOrdersActiveUs) {
+    for (auto& [id, command] : commands_) {
+      if (command.deputy == deputy.id) command.is_mirrored = false;
+    }
+  }
+  for (const auto& [id, reported] : deputy.commands) TakeOver(deputy, reported, now_us);
+  for (auto& [id, command] : commands_) {
+    if (command.deputy == deputy.id && command.waits_to_restart) {
+      Resolve(command, *command.waits_to_restart ? Wish::kRestart : Wish::kStart);
+      deputy.is_changed = true;
+    }
+  }
+  RefineByHealth(deputy, now_us);
+  TakeWhatTheReportLacks(deputy, now_us);
+  NoteChanges(now_us, report.utime);
+}
+
+void Sheriff::TakeCommands(KnownDeputy& deputy, const DeputyReport& report, std::int64_t now_us) {
   std::map<std::string, ReportedCommand> commands;
   for (const CommandReport& each : report.commands) {
     if (each.spec.id.empty()) continue;
@@ -92,19 +115,6 @@ void Sheriff::OnReport(const DeputyReport& report, std::int64_t now_us) {
     }
   }
   deputy.commands = std::move(commands);
-  deputy.report = report;
-  deputy.report->commands.clear();
-  deputy.heard_us = now_us;
-  for (const auto& [id, reported] : deputy.commands) TakeOver(deputy, reported, now_us);
-  for (auto& [id, command] : commands_) {
-    if (command.deputy == deputy.id && command.waits_to_restart) {
-      Resolve(command, *command.waits_to_restart ? Wish::kRestart : Wish::kStart);
-      deputy.is_changed = true;
-    }
-  }
-  RefineByHealth(deputy, now_us);
-  TakeWhatTheReportLacks(deputy, now_us);
-  NoteChanges(now_us, report.utime);
 }
 
 // Nothing that runs is restarted: what nobody asked us for goes on as it is.
@@ -129,6 +139,14 @@ void Sheriff::TakeOver(const KnownDeputy& deputy,
   } else if (report.pid != command.old_exec_pid) {
     command.old_exec_pid = 0;
   }
+  TakeRunId(deputy, reported, now_us);
+}
+
+void Sheriff::TakeRunId(const KnownDeputy& deputy,
+                        const ReportedCommand& reported,
+                        std::int64_t now_us) {
+  const CommandReport& report = reported.report;
+  KnownCommand& command = commands_.at(report.spec.id);
   if (mode_ == Mode::kObserve) {
     if (!command.is_in_file) command.spec = report.spec;
     if (command.is_mirrored || command.run_id == report.run_id) return;

@@ -18,6 +18,9 @@ namespace clearway::core::procman {
 inline constexpr std::size_t kMaxDeputies = 1000;
 inline constexpr std::size_t kMaxCommands = 10000;
 
+/// Orders come at 1 Hz: who has given none for this long gives none any more.
+inline constexpr std::int64_t kOrdersActiveUs = 3'000'000;
+
 /// One command in the last report of one deputy, and what its reports before that add.
 struct ReportedCommand {
   CommandReport report;

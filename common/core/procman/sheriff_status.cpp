@@ -73,7 +73,7 @@ bool Sheriff::IsHeard(const std::string& deputy, std::int64_t now_us) const {
 
 Sheriff::Copy Sheriff::CopyOn(const KnownDeputy* deputy,
                               const std::string& command,
-                              std::int64_t now_us) const {
+                              std::int64_t now_us) {
   Copy copy{.deputy = deputy};
   if (deputy == nullptr) return copy;
   copy.is_told = deputy->health && now_us - deputy->health_us <= kHealthLastsUs;
@@ -139,7 +139,7 @@ Sheriff::Judgement Sheriff::Judge(const KnownCommand& command, std::int64_t now_
 
 Sheriff::Judgement Sheriff::JudgeCopy(const KnownCommand& command,
                                       const Copy& copy,
-                                      std::int64_t now_us) const {
+                                      std::int64_t now_us) {
   const bool is_to_run = !command.force_quit && !command.is_removed && command.run_id != 0;
   if (copy.reported == nullptr) {
     if (is_to_run) return {Status::kStarting, {}};
@@ -147,15 +147,22 @@ Sheriff::Judgement Sheriff::JudgeCopy(const KnownCommand& command,
   }
   const CommandReport& report = copy.reported->report;
   const bool is_new_run = is_to_run && command.run_id != report.run_id;
-  const CommandHealthReport* health = copy.health;
-  if (report.pid != 0) {
-    if (command.is_removed) return {Status::kRemoving, {}};
-    if (command.force_quit) return {Status::kStopping, health != nullptr ? health->text : ""};
-    if (is_new_run) return {Status::kRestarting, {}};
-    return JudgeRunning(copy);
-  }
   if (command.is_removed) return {Status::kRemoving, {}};
-  if (is_new_run) return {Status::kStarting, {}};
+  if (report.pid == 0) {
+    return is_new_run ? Judgement{Status::kStarting, {}} : JudgeEnded(command, copy, now_us);
+  }
+  if (command.force_quit) {
+    return {Status::kStopping, copy.health != nullptr ? copy.health->text : ""};
+  }
+  return is_new_run ? Judgement{Status::kRestarting, {}} : JudgeRunning(copy);
+}
+
+// It has no process, and no order that would give it one.
+Sheriff::Judgement Sheriff::JudgeEnded(const KnownCommand& command,
+                                       const Copy& copy,
+                                       std::int64_t now_us) {
+  const CommandReport& report = copy.reported->report;
+  const CommandHealthReport* health = copy.health;
   if (!command.force_quit && health != nullptr) {
     if (health->state == CommandState::kRefused) return {Status::kRefused, health->text};
     if (health->state == CommandState::kGaveUp) return {Status::kGaveUp, health->text};

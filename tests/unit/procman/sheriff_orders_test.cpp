@@ -361,6 +361,29 @@ TEST(SheriffOrdersTest, AnObserverTakesReportsOfAnyAgeAndMirrorsStops) {
   EXPECT_EQ(bed.StatusOf(observer, "a"), Status::kStopped) << "also when nobody commands any more";
 }
 
+TEST(SheriffOrdersTest, AnObserverBelievesReportsWhereTheOrdersDidNotReachIt) {
+  SheriffBed bed({"dep1"});
+  Sheriff& observer = bed.AddSheriff("watches", Sheriff::Mode::kObserve);
+  Sheriff& sheriff = bed.AddSheriff("s");
+  sheriff.Load(Deploying({Deployed("a", "dep1"), Deployed("b", "dep1")}), bed.now_us());
+  sheriff.Start(Everything(), bed.now_us());
+  bed.Run(1'000'000);
+  sheriff.Stop(Everything(), bed.now_us());
+  bed.Run(1'000'000);
+  bed.RemoveSheriff(sheriff);
+  bed.Run(4'000'000);
+  // Straight to the deputy.
+  Orders unheard;
+  unheard.utime = SheriffBed::kEpoch + bed.now_us();
+  unheard.deputy_id = "dep1";
+  unheard.commands = {{.spec = Deployed("a", "dep1").spec, .run_id = 9, .force_quit = false}};
+  bed.deputy("dep1").TakeOrders(unheard, bed.now_us(), unheard.utime);
+  bed.Run(1'000'000);
+
+  EXPECT_EQ(bed.StatusOf(observer, "a"), Status::kRunning);
+  EXPECT_FALSE(observer.View("b", bed.now_us()).has_value()) << "the deputy has forgotten it";
+}
+
 TEST(SheriffOrdersTest, AnObserverThatTakesCommandRestartsNothing) {
   SheriffBed bed({"dep1"});
   Sheriff& observer = bed.AddSheriff("watches", Sheriff::Mode::kObserve);
