@@ -21,7 +21,7 @@ class OutputLines {
     bool is_mark = false;  ///< Not written by the command.
   };
   static constexpr std::size_t kMaxLines = 2000;
-  static constexpr std::size_t kMaxBytes = 256 * 1024;
+  static constexpr std::size_t kMaxBytes = 262'144;
   /// Longer lines go on in a line of their own.
   static constexpr int kMaxCells = 400;
 

@@ -10,7 +10,6 @@ namespace {
 
 using core::procman::CommandView;
 using core::procman::ScriptRunner;
-using core::procman::Status;
 using Kind = KeyPress::Kind;
 
 }  // namespace

@@ -68,14 +68,14 @@ Intent ScreenModel::AskToCommand() {
     SetNotice("In command already.");
     return {};
   }
-  const Intent intent{.kind = Intent::Kind::kTakeCommand};
+  Intent intent{.kind = Intent::Kind::kTakeCommand};
   if (!snapshot().other) return intent;
   return Ask("Sheriff " + Printable(snapshot().other->id) + " gives orders. Take command from it?",
-             intent);
+             std::move(intent));
 }
 
 Intent ScreenModel::AskToQuit(bool is_sure) {
-  const Intent quit{.kind = Intent::Kind::kQuit};
+  Intent quit{.kind = Intent::Kind::kQuit};
   if (is_sure || snapshot().is_observer) return quit;
   if (content_.progress.state == ScriptRunner::State::kRunning) {
     return Ask(
@@ -94,7 +94,7 @@ Intent ScreenModel::AskToQuit(bool is_sure) {
   return Ask("Orders are not carried out yet (" + first +
                  (on_their_way > 1 ? ", and " + std::to_string(on_their_way - 1) + " more" : "") +
                  "). Quit?",
-             quit);
+             std::move(quit));
 }
 
 Intent ScreenModel::RunScript() {

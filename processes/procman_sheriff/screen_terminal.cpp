@@ -188,7 +188,7 @@ struct Terminal::Curses {
   }
 
   // What was written since the last call.
-  std::string TakeBytes() const {
+  [[nodiscard]] std::string TakeBytes() const {
     std::fflush(file);
     const int fd = fileno(file);
     const off_t size = lseek(fd, 0, SEEK_END);
