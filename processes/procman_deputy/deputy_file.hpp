@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "common/config/config.hpp"
 #include "common/core/procman/allow_list.hpp"
 #include "common/core/procman/health_watch.hpp"
 #include "common/core/procman/output_queue.hpp"
@@ -87,3 +90,13 @@ struct DeputyFile {
 };
 
 }  // namespace clearway
+
+// What is long to compile is compiled once, in deputy_file.cpp.
+namespace clearway::config {
+extern template LoadResult<DeputyFile> Parse(const std::string& text,
+                                             const std::string& file,
+                                             std::span<const std::string> overrides);
+extern template LoadResult<DeputyFile> Load(const std::filesystem::path& file,
+                                            std::span<const std::string> overrides);
+extern template std::string Print(const LoadResult<DeputyFile>& result);
+}  // namespace clearway::config

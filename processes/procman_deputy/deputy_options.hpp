@@ -9,10 +9,6 @@
 #include "processes/procman_deputy/deputy_file.hpp"
 #include "processes/procman_deputy/deputy_process.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace clearway {
 
 /// The deputy's command line.
@@ -33,8 +29,6 @@ struct DeputyOptions {
 
 /// The host's own file, where none is named.
 inline constexpr char kHostFile[] = "/etc/clearway/deputy.xml";
-
-void AddDeputyOptions(CLI::App& app, DeputyOptions& options);
 
 /// The host's file with --set applied; defaults where there is none. Throws config::ConfigError.
 [[nodiscard]] config::LoadResult<DeputyFile> LoadDeputyFile(const DeputyOptions& options);

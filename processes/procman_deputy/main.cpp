@@ -24,6 +24,32 @@ namespace {
 
 constexpr int kExitNotPermitted = 77;
 
+void AddDeputyOptions(CLI::App& app, DeputyOptions& options) {
+  app.set_version_flag("--version", CLEARWAY_VERSION);
+  app.add_option("--config", options.config_path, "This host's own file: what may run here")
+      ->type_name("FILE")
+      ->default_str(kHostFile);
+  app.add_option("--set", options.overrides, "Overrides element.attribute=value; may be repeated")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("-i,--id", options.id, "Name of this deputy; without it the host's name")
+      ->type_name("ID");
+  app.add_option("-u,--lcm-url,--lcmurl", options.lcm_url, "udpm://GROUP:PORT?ttl=N")
+      ->type_name("URL");
+  app.add_option("--channel-prefix", options.channel_prefix, "Put before every channel name")
+      ->type_name("TEXT");
+  app.add_option("-l,--log", options.log_file, "The deputy's own messages go to this file")
+      ->type_name("FILE");
+  app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}));
+  app.add_flag("-v,--verbose", options.is_verbose, "The same as --log-level debug");
+  app.add_flag("--allow-any", options.allow_any, "Run whatever a sheriff on the bus asks for");
+  app.add_flag("--allow-root", options.allow_root, "Run commands as root");
+  app.add_flag("--check-config", options.check_config, "Check the host's file and stop");
+  app.add_flag("--print-config", options.print_config, "Print what is in force and stop");
+}
+
 // One deputy a state folder; the lock goes with the process, however it ends.
 void LockFolder(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
