@@ -56,7 +56,8 @@ class SheriffProcess {
   /// Each line of the history as it is made, from now on.
   void OnChange(std::function<void(const core::procman::Change&)> handler);
   void OnOutput(std::function<void(const CommandOutput&)> handler);
-  /// After whatever may have changed anything to see: a message, an action, time.
+  /// After whatever may have changed anything to see: a message, an action, time. A handler that
+  /// calls Update() whenever it is called never ends.
   void OnUpdate(std::function<void()> handler);
 
   /// Messages of the PM_ channels that could not be decoded.
