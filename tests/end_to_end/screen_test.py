@@ -71,8 +71,12 @@ def command_line(pid):
 class Terminal:
     """A tmux server with one window, in which a program runs."""
 
+    _count = 0
+
     def __init__(self, folder, *command):
-        self._socket = folder / "tmux"
+        # A server that was told to end still holds its socket for a moment.
+        Terminal._count += 1
+        self._socket = folder / f"tmux{Terminal._count}"
         self.run("-f", "/dev/null", "new-session", "-d", "-x", 80, "-y", 24, *command)
 
     def run(self, *words, check=True):
