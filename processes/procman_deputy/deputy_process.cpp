@@ -30,6 +30,8 @@ constexpr std::size_t kOutputHeaderBytes = 128;
 // Channels come from command lines.
 constexpr std::size_t kMaxStatusChannels = 256;
 constexpr std::size_t kRememberedInfos = 32;
+// A state goes out at once, but anybody may ask for it, and many commands may change together.
+constexpr PacedAction::Pace kStatePace{.interval_us = 50'000, .burst = 10};
 
 std::size_t TextBytes(const process::Runtime& runtime, const std::string& id) {
   const std::size_t most = runtime.MaxMessageBytes(channels::kPmOutput.bus);
@@ -57,6 +59,8 @@ DeputyProcess::DeputyProcess(process::Runtime& runtime,
       deputy_(settings_.id, settings_.respawn, settings_.health, *this),
       output_(settings_.output, TextBytes(runtime, settings_.id)),
       logs_(settings_.logs),
+      state_(runtime, kStatePace, [this] { PublishState(); }),
+      keeping_(runtime, {}, [this] { KeepOrders(); }),
       session_(runtime.NewSession()),
       nonce_(runtime.NewSession()) {
   machine_.SetListener(this);
@@ -91,7 +95,7 @@ void DeputyProcess::Announce() {
 void DeputyProcess::OnDiscovery(const procman_lcm::discovery_t& message) {
   if (has_ended_) return;
   if (is_established_) {
-    PublishState();
+    state_.Ask();
     return;
   }
   if (message.transmitter_id != settings_.id || message.nonce == nonce_) return;
@@ -144,7 +148,7 @@ OrdersOutcome DeputyProcess::TakeOrders(const core::procman::Orders& orders) {
     SayRarely("orders of " + orders.sheriff_id +
               " ignored: an id is empty or doubled, or there are too many");
   } else if (outcome == OrdersOutcome::kTaken) {
-    KeepOrders();
+    keeping_.Ask();
     const std::vector<core::procman::CommandReport> after = deputy_.Reports();
     const bool has_changed = !std::equal(
         before.begin(), before.end(), after.begin(), after.end(), [](const auto& a, const auto& b) {
@@ -208,7 +212,7 @@ void DeputyProcess::OnOutput(std::int32_t pid, std::string_view text) {
 void DeputyProcess::OnExit(std::int32_t pid, int wait_status) {
   deputy_.OnExit(pid, wait_status, runtime_.MonotonicUs());
   ids_.erase(pid);
-  KeepOrders();
+  keeping_.Ask();
   AfterEvent(true);
 }
 
@@ -216,9 +220,10 @@ void DeputyProcess::OnExit(std::int32_t pid, int wait_status) {
 void DeputyProcess::AfterEvent(bool has_changed) {
   if (has_ended_) return;
   SendOutput();
-  if (has_changed && is_established_) PublishState();
+  if (has_changed && is_established_) state_.Ask();
   if (is_shutting_down_ && deputy_.IsDone()) {
     SendOutput(settings_.output.batch_us);
+    state_.Flush();
     End(kStopped);
     return;
   }
@@ -257,7 +262,7 @@ void DeputyProcess::EverySecond() {
   if (has_ended_) return;
   host_use_ = machine_.Sample();
   if (settings_.config_digest) config_digest_ = settings_.config_digest();
-  PublishState();
+  state_.Ask();
 }
 
 core::procman::DeputyReport DeputyProcess::Report() const {
@@ -383,6 +388,7 @@ void DeputyProcess::ShutDown() {
     process::LogWarning("asked to stop again: killing what is left");
     deputy_.KillAll();
   } else {
+    keeping_.Flush();
     is_shutting_down_ = true;
     deputy_.ShutDown(runtime_.MonotonicUs());
     AfterEvent(true);

@@ -22,6 +22,7 @@
 #include "common/process/runtime.hpp"
 #include "processes/procman_deputy/command_logs.hpp"
 #include "processes/procman_deputy/machine.hpp"
+#include "processes/procman_deputy/paced_action.hpp"
 
 namespace clearway {
 
@@ -106,6 +107,8 @@ class DeputyProcess final : private Machine::Listener, private core::procman::Co
   core::procman::Deputy deputy_;
   core::procman::OutputQueue output_;
   CommandLogs logs_;
+  PacedAction state_;
+  PacedAction keeping_;
   Machine::HostUse host_use_;
   std::map<std::int32_t, std::string> ids_;  // Of running commands, by their processes.
   std::set<std::string> status_channels_;
