@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <sys/ioctl.h>
 #include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <termios.h>
@@ -178,9 +179,14 @@ TerminalChild StartOnTerminal(const ChildSettings& settings) {
   if (pid < 0) Fail("cannot start " + program);
   // It is there, if only as a zombie: nobody but this process can reap it.
   const auto entry = ReadProcess(pid);
-  return {.pid = pid,
-          .output_fd = terminal.master.Release(),
-          .start_ticks = entry ? entry->start_ticks : 0};
+  if (!entry) {  // Without its start time nobody could ever stop it.
+    const int error = errno;
+    kill(pid, SIGKILL);
+    waitpid(pid, nullptr, 0);
+    errno = error;
+    Fail("cannot read /proc/" + std::to_string(pid) + "/stat");
+  }
+  return {.pid = pid, .output_fd = terminal.master.Release(), .start_ticks = entry->start_ticks};
 }
 
 OutputPart ReadOutput(int output_fd, std::span<char> buffer) {

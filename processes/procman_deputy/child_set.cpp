@@ -14,6 +14,7 @@
 #include "common/host/program_path.hpp"
 #include "common/host/reaping.hpp"
 #include "common/host/signalling.hpp"
+#include "common/host/spare_descriptors.hpp"
 #include "common/host/terminal_child.hpp"
 #include "common/process/log.hpp"
 
@@ -58,6 +59,16 @@ std::optional<std::int64_t> SecondsOf(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
   const bool is_whole = error == std::errc() && end == text.data() + text.size();
   return is_whole && seconds >= 1 && seconds <= 86400 ? std::optional(seconds) : std::nullopt;
+}
+
+// Nothing where /proc cannot be read for now, say for want of memory: no reason to end everything.
+std::optional<host::ProcessTable> ReadTable() {
+  try {
+    return host::ProcessTable::Read();
+  } catch (const std::runtime_error& error) {
+    process::LogError(error.what());
+    return std::nullopt;
+  }
 }
 
 bool IsEnded(const host::ProcessEntry& process) {
@@ -115,6 +126,8 @@ StartOutcome ChildSet::StartLine(const ExecLine& line, const CommandSpec& spec) 
   const auto program = host::FindProgram(line.arguments.front(), path_);
   if (!program)
     return NotStarted("no program \"" + line.arguments.front() + "\" in " + path_, false);
+  if (!host::HasDescriptorsToSpare())
+    return NotStarted("too few file descriptors are left (ulimit -n)", false);
   try {
     const host::TerminalChild started =
         host::StartOnTerminal({.program = *program,
@@ -181,7 +194,9 @@ void ChildSet::Signal(std::int32_t pid, int signal) {
   Child& child = found->second;
   // The command itself is told first; that does not wait for a look at all processes.
   if (!child.wait_status) host::SendSignal(pid, child.start_ticks, signal);
-  for (const host::ProcessEntry& member : MembersOf(pid, child, host::ProcessTable::Read())) {
+  const auto table = ReadTable();
+  if (!table) return;
+  for (const host::ProcessEntry& member : MembersOf(pid, child, *table)) {
     if (member.pid != pid) host::SendSignal(member.pid, member.start_ticks, signal);
   }
 }
@@ -241,8 +256,7 @@ std::vector<host::ProcessEntry> ChildSet::UnclaimedOrphans(const host::ProcessTa
 }
 
 // True while something of the ended command is left.
-bool ChildSet::KillRemains(pid_t pid, Child& child) {
-  const host::ProcessTable table = host::ProcessTable::Read();
+bool ChildSet::KillRemains(pid_t pid, Child& child, const host::ProcessTable& table) {
   std::vector<host::ProcessEntry> remains = MembersOf(pid, child, table);
   for (const host::ProcessEntry& orphan : UnclaimedOrphans(table)) {
     remains.push_back(orphan);
@@ -257,11 +271,17 @@ bool ChildSet::KillRemains(pid_t pid, Child& child) {
 }
 
 void ChildSet::FinishEnded() {
+  if (std::none_of(children_.begin(), children_.end(), [](const auto& entry) {
+        return entry.second.wait_status.has_value();
+      })) {
+    return;
+  }
   bool is_left = false;
   std::vector<std::pair<pid_t, int>> gone;
+  const auto table = ReadTable();
   for (auto& [pid, child] : children_) {
     if (!child.wait_status) continue;
-    const bool remains = KillRemains(pid, child);
+    const bool remains = !table || KillRemains(pid, child, *table);
     if (remains && runtime_.MonotonicUs() - child.ended_us < kRemainsTimeUs) {
       is_left = true;
       continue;
@@ -289,9 +309,8 @@ Machine::HostUse ChildSet::Sample() {
   const host::HostLoad::Reading reading = host_load_.Sample();
   const std::int64_t now_us = runtime_.MonotonicUs();
   const double elapsed_s = sampled_us_ < 0 ? 0.0 : static_cast<double>(now_us - sampled_us_) * 1e-6;
-  if (!children_.empty()) {
-    const host::ProcessTable table = host::ProcessTable::Read();
-    for (auto& [pid, child] : children_) MeasureChild(pid, child, table, elapsed_s);
+  if (const auto table = children_.empty() ? std::nullopt : ReadTable()) {
+    for (auto& [pid, child] : children_) MeasureChild(pid, child, *table, elapsed_s);
   }
   sampled_us_ = now_us;
   return {.cpu_load = reading.cpu_load,

@@ -81,7 +81,7 @@ class ChildSet final : public Machine {
                                                           const host::ProcessTable& table) const;
   [[nodiscard]] std::vector<host::ProcessEntry> UnclaimedOrphans(
       const host::ProcessTable& table) const;
-  [[nodiscard]] bool KillRemains(pid_t pid, Child& child);
+  [[nodiscard]] bool KillRemains(pid_t pid, Child& child, const host::ProcessTable& table);
   void FinishEnded();
   void MeasureChild(pid_t pid, Child& child, const host::ProcessTable& table, double elapsed_s);
 

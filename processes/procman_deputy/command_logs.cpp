@@ -4,12 +4,17 @@
 #include <stdexcept>
 
 #include "common/host/log_file_name.hpp"
+#include "common/host/spare_descriptors.hpp"
 
 namespace clearway {
 
 host::RotatingLog* CommandLogs::LogOf(const std::string& command_id) {
   const auto found = logs_.find(command_id);
   if (found != logs_.end()) return &found->second;
+  if (!host::HasDescriptorsToSpare()) {
+    open_problem_ = "no log of " + command_id + ": too few file descriptors are left (ulimit -n)";
+    return nullptr;
+  }
   try {
     const std::filesystem::path path =
         std::filesystem::path(config_.folder) / host::FileNameOf(command_id);

@@ -149,6 +149,7 @@ OrdersOutcome DeputyProcess::TakeOrders(const core::procman::Orders& orders) {
               " ignored: an id is empty or doubled, or there are too many");
   } else if (outcome == OrdersOutcome::kTaken) {
     keeping_.Ask();
+    for (const core::procman::CommandReport& command : before) ForgetIfGone(command.spec.id);
     const std::vector<core::procman::CommandReport> after = deputy_.Reports();
     const bool has_changed = !std::equal(
         before.begin(), before.end(), after.begin(), after.end(), [](const auto& a, const auto& b) {
@@ -210,10 +211,18 @@ void DeputyProcess::OnOutput(std::int32_t pid, std::string_view text) {
 }
 
 void DeputyProcess::OnExit(std::int32_t pid, int wait_status) {
+  const auto ended = ids_.extract(pid);
   deputy_.OnExit(pid, wait_status, runtime_.MonotonicUs());
-  ids_.erase(pid);
+  if (ended) ForgetIfGone(ended.mapped());
   keeping_.Ask();
   AfterEvent(true);
+}
+
+// Ids come and go for as long as a deputy lives: what is no command any more holds nothing.
+void DeputyProcess::ForgetIfGone(const std::string& command_id) {
+  if (deputy_.Knows(command_id)) return;
+  logs_.Close(command_id);
+  output_.Forget(command_id);
 }
 
 // What the last change asks for: news, output, the next timer, the end.

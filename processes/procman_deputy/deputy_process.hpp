@@ -91,6 +91,7 @@ class DeputyProcess final : private Machine::Listener, private core::procman::Co
   void WatchStatus(const std::string& channel);
   void Resume();
   void KeepOrders();
+  void ForgetIfGone(const std::string& command_id);
   void EverySecond();
   void AfterEvent(bool has_changed);
   void SendOutput(std::int64_t early_us = 0);

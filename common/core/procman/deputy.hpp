@@ -65,6 +65,10 @@ class Deputy {
   /// The command that this process belongs to; null when there is none.
   [[nodiscard]] const ManagedCommand* CommandOf(std::int32_t pid) const;
 
+  [[nodiscard]] bool Knows(const std::string& command_id) const {
+    return commands_.contains(command_id);
+  }
+
   /// In the order of their ids. `Reports` are without what the machine knows.
   [[nodiscard]] std::vector<CommandReport> Reports() const;
   [[nodiscard]] std::vector<CommandHealthReport> Health(std::int64_t now_us) const;
