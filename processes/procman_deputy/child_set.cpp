@@ -94,7 +94,7 @@ ChildSet::ChildSet(process::LiveRuntime& runtime,
 
 ChildSet::~ChildSet() {
   for (auto& [pid, child] : children_) {
-    if (child.output.is_open()) runtime_.UnwatchDescriptor(child.output.get());
+    runtime_.UnwatchDescriptor(child.output.get());
     Signal(pid, SIGKILL);
   }
 }
@@ -138,13 +138,17 @@ StartOutcome ChildSet::StartLine(const ExecLine& line, const CommandSpec& spec) 
     child.command_id = spec.id;
     child.start_ticks = started.start_ticks;
     child.output.Reset(started.output_fd);
-    runtime_.WatchDescriptor(started.output_fd,
-                             [this, pid = started.pid] { ReadOutput(pid, kOutputAtOnceBytes); });
+    WatchOutput(started.pid, child);
     outcome.pid = started.pid;
   } catch (const std::exception& error) {
     return NotStarted(error.what(), false);
   }
   return outcome;
+}
+
+void ChildSet::WatchOutput(pid_t pid, const Child& child) {
+  runtime_.WatchDescriptor(child.output.get(),
+                           [this, pid] { ReadOutput(pid, kOutputAtOnceBytes); });
 }
 
 std::vector<std::string> ChildSet::EnvironmentOf(const ExecLine& line,
@@ -175,16 +179,16 @@ void ChildSet::ReadOutput(pid_t pid, std::size_t max_bytes) {
   if (found == children_.end()) return;
   host::Descriptor& output = found->second.output;
   std::array<char, 16384> buffer{};
-  for (std::size_t sum = 0; output.is_open() && sum < max_bytes;) {
+  for (std::size_t sum = 0; sum < max_bytes;) {
     const host::OutputPart part = host::ReadOutput(output.get(), buffer);
     if (part.size > 0 && listener_ != nullptr) listener_->OnOutput(pid, {buffer.data(), part.size});
     sum += part.size;
     if (part.is_over) {
+      // Kept open all the same: to close it hangs up, and SIGHUP would kill a command that only
+      // sends its output elsewhere. Sample() looks whether it holds its terminal again.
       runtime_.UnwatchDescriptor(output.get());
-      output.Reset();
-    } else if (part.size == 0) {
-      break;
     }
+    if (part.size == 0) break;
   }
 }
 
@@ -298,8 +302,7 @@ void ChildSet::FinishEnded() {
   }
   for (const auto& [pid, status] : gone) {
     ReadOutput(pid, kLastOutputBytes);
-    Child& child = children_.at(pid);
-    if (child.output.is_open()) runtime_.UnwatchDescriptor(child.output.get());
+    runtime_.UnwatchDescriptor(children_.at(pid).output.get());
     children_.erase(pid);
     if (listener_ != nullptr) listener_->OnExit(pid, status);
   }
@@ -312,6 +315,7 @@ Machine::HostUse ChildSet::Sample() {
   if (const auto table = children_.empty() ? std::nullopt : ReadTable()) {
     for (auto& [pid, child] : children_) MeasureChild(pid, child, *table, elapsed_s);
   }
+  for (const auto& [pid, child] : children_) WatchOutput(pid, child);
   sampled_us_ = now_us;
   return {.cpu_load = reading.cpu_load,
           .memory_total_bytes = reading.memory.total_bytes,

@@ -75,6 +75,7 @@ class ChildSet final : public Machine {
                                                        const std::string& command_id) const;
   core::procman::StartOutcome StartLine(const core::procman::ExecLine& line,
                                         const core::procman::CommandSpec& spec);
+  void WatchOutput(pid_t pid, const Child& child);
   void ReadOutput(pid_t pid, std::size_t max_bytes);
   [[nodiscard]] std::vector<host::ProcessEntry> MembersOf(pid_t pid,
                                                           Child& child,
