@@ -108,6 +108,13 @@ void NameGraphConfig(const DeputyConfig& config) {
   }
 }
 
+// A limit of the file size and a reader of stderr that is gone are errors of a write, no reason to
+// end. Children have all signals at their defaults.
+void IgnoreSignalsOfWrites() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
 int Serve(const DeputyOptions& options, const config::LoadResult<DeputyFile>& file) {
   DeputySettings settings = SettingsOf(options, file.root.deputy);
   if (!settings.orders_file.empty()) LockFolder(settings.orders_file.parent_path());
@@ -153,6 +160,7 @@ int Main(int argc, char** argv) {
     if (options.print_config || options.check_config) return graph::kExitOk;
     if (!MayRun(options, file.root)) return kExitNotPermitted;
     OpenLogFile(options.log_file);
+    IgnoreSignalsOfWrites();
     return Serve(options, file);
   });
 }
