@@ -32,6 +32,8 @@ constexpr std::size_t kLastOutputBytes = 4U << 20;
 // Remains get SIGKILL; how often it is looked whether they are gone, and how long.
 constexpr std::int64_t kLookAgainUs = 5'000;
 constexpr std::int64_t kRemainsTimeUs = 2'000'000;
+// LCM's bound.
+constexpr std::size_t kLongestChannel = 63;
 
 std::optional<std::string> VariableOf(const std::string& name) {
   const char* const value = std::getenv(name.c_str());
@@ -69,6 +71,11 @@ std::optional<host::ProcessTable> ReadTable() {
     process::LogError(error.what());
     return std::nullopt;
   }
+}
+
+bool IsChannel(const std::string& text) {
+  return !text.empty() && text.size() <= kLongestChannel &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c <= '~'; });
 }
 
 bool IsEnded(const host::ProcessEntry& process) {
@@ -112,6 +119,11 @@ StartOutcome ChildSet::Start(const CommandSpec& spec) {
 StartOutcome ChildSet::StartLine(const ExecLine& line, const CommandSpec& spec) {
   StartOutcome outcome;
   if (const std::string* const channel = SettingOf(line, kStatusChannelVariable)) {
+    if (!IsChannel(*channel)) {
+      return NotStarted(std::string(kStatusChannelVariable) +
+                            ": expected the name of a channel, 1 to 63 letters, digits and signs",
+                        true);
+    }
     outcome.status_channel = *channel;
   }
   if (const std::string* const seconds = SettingOf(line, kRestartUnhealthyVariable)) {

@@ -163,18 +163,24 @@ OrdersOutcome DeputyProcess::TakeOrders(const core::procman::Orders& orders) {
 core::procman::StartOutcome DeputyProcess::Start(const core::procman::CommandSpec& spec) {
   core::procman::StartOutcome outcome = machine_.Start(spec);
   if (outcome.pid != 0) ids_[outcome.pid] = spec.id;
-  if (!outcome.status_channel.empty()) WatchStatus(outcome.status_channel);
+  if (!outcome.status_channel.empty() && !WatchStatus(outcome.status_channel)) {
+    Note(spec.id,
+         "its status is not watched: this deputy has been told of " +
+             std::to_string(kMaxStatusChannels) + " other channels since its start");
+  }
   return outcome;
 }
 
-void DeputyProcess::WatchStatus(const std::string& channel) {
-  if (status_channels_.contains(channel) || status_channels_.size() >= kMaxStatusChannels) return;
+bool DeputyProcess::WatchStatus(const std::string& channel) {
+  if (status_channels_.contains(channel)) return true;
+  if (status_channels_.size() >= kMaxStatusChannels) return false;
   const std::string& name = *status_channels_.insert(channel).first;
   process::Subscribe<status_t>(
       runtime_,
       messages::Channel<status_t>{name.c_str(), messages::BusId::kShared},
       [this, &name](const status_t& message) { OnStatus(name, message); },
       [this] { ++invalid_messages_; });
+  return true;
 }
 
 void DeputyProcess::OnStatus(const std::string& channel, const status_t& message) {

@@ -88,7 +88,8 @@ class DeputyProcess final : private Machine::Listener, private core::procman::Co
   void OnStatus(const std::string& channel, const status_t& message);
   void Announce();
   void Establish();
-  void WatchStatus(const std::string& channel);
+  // False: there are too many.
+  bool WatchStatus(const std::string& channel);
   void Resume();
   void KeepOrders();
   void ForgetIfGone(const std::string& command_id);
