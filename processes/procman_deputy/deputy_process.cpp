@@ -145,8 +145,8 @@ OrdersOutcome DeputyProcess::TakeOrders(const core::procman::Orders& orders) {
     SayRarely("stale orders of " + orders.sheriff_id + " ignored: it already gave newer ones");
   } else if (outcome == OrdersOutcome::kInvalid) {
     ++invalid_messages_;
-    SayRarely("orders of " + orders.sheriff_id +
-              " ignored: an id is empty or doubled, or there are too many");
+    SayRarely("orders of " + orders.sheriff_id.substr(0, core::procman::Deputy::kMaxIdBytes) +
+              " ignored: an id is empty, doubled or too long, or there are too many commands");
   } else if (outcome == OrdersOutcome::kTaken) {
     keeping_.Ask();
     for (const core::procman::CommandReport& command : before) ForgetIfGone(command.spec.id);

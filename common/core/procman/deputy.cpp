@@ -11,7 +11,8 @@ namespace {
 bool IsValid(const std::vector<DesiredCommand>& commands) {
   std::set<std::string> ids;
   for (const DesiredCommand& command : commands) {
-    if (command.spec.id.empty() || !ids.insert(command.spec.id).second) return false;
+    const std::string& id = command.spec.id;
+    if (id.empty() || id.size() > Deputy::kMaxIdBytes || !ids.insert(id).second) return false;
   }
   return commands.size() <= Deputy::kMaxCommands;
 }
@@ -27,7 +28,9 @@ Deputy::Deputy(std::string id,
 OrdersOutcome Deputy::Take(const Orders& orders, std::int64_t now_us) {
   if (orders.deputy_id != id_) return OrdersOutcome::kForOther;
   if (is_shutting_down_) return OrdersOutcome::kShuttingDown;
-  if (!IsValid(orders.commands)) return OrdersOutcome::kInvalid;
+  if (!IsValid(orders.commands) || orders.sheriff_id.size() > kMaxIdBytes) {
+    return OrdersOutcome::kInvalid;
+  }
   switch (ledger_.Judge(orders.sheriff_id, orders.utime, now_us)) {
     case OrderLedger::Verdict::kRepeated:
       return OrdersOutcome::kRepeated;

@@ -19,7 +19,7 @@ enum class OrdersOutcome {
   kForOther,  ///< For another deputy.
   kRepeated,  ///< The newest once more.
   kStale,     ///< Older than what this sheriff already said.
-  kInvalid,   ///< An empty or doubled id, or more commands than any host runs.
+  kInvalid,   ///< An id is empty, doubled or too long, or there are more commands than a host runs.
   kShuttingDown,
 };
 
@@ -29,6 +29,7 @@ enum class OrdersOutcome {
 class Deputy {
  public:
   static constexpr std::size_t kMaxCommands = 1000;
+  static constexpr std::size_t kMaxIdBytes = 1000;  ///< Of a command's or a sheriff's id.
 
   Deputy(std::string id,
          const RespawnConfig& respawn,

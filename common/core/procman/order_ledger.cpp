@@ -10,6 +10,9 @@ namespace {
 constexpr std::size_t kMaxSheriffs = 256;
 // Orders come at 1 Hz.
 constexpr std::int64_t kActiveUs = 3'000'000;
+// No network keeps one back for so long: what is older than the last one and comes after such a
+// silence is a sheriff whose clock was set back.
+constexpr std::int64_t kClockStepUs = 10'000'000;
 
 }  // namespace
 
@@ -17,7 +20,8 @@ OrderLedger::Verdict OrderLedger::Judge(const std::string& sheriff_id,
                                         std::int64_t utime,
                                         std::int64_t now_us) {
   const auto known = sheriffs_.find(sheriff_id);
-  if (known != sheriffs_.end() && utime <= known->second.utime) {
+  if (known != sheriffs_.end() && utime <= known->second.utime &&
+      now_us - known->second.heard_us < kClockStepUs) {
     return utime == known->second.utime ? Verdict::kRepeated : Verdict::kStale;
   }
   if (known == sheriffs_.end() && sheriffs_.size() >= kMaxSheriffs) ForgetTheOldest();

@@ -8,7 +8,8 @@
 namespace clearway::core::procman {
 
 /// Who commands, and whether an order is newer than the last one of the same sheriff. A sheriff's
-/// clock is compared with nothing but itself. Bounded memory, whatever is sent.
+/// clock is compared with nothing but itself; where it was set back, the sheriff is obeyed again
+/// after 10 s without anything newer. Bounded memory, for ids of bounded length.
 class OrderLedger {
  public:
   enum class Verdict {

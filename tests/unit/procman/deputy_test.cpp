@@ -265,6 +265,22 @@ TEST_F(DeputyTest, OrdersOfASheriffMustGrowInTime) {
   EXPECT_EQ(Order({}, "s"), OrdersOutcome::kTaken);
 }
 
+TEST_F(DeputyTest, ASheriffWhoseClockWasSetBackIsObeyedAgainAfterAWhile) {
+  utime_ = std::numeric_limits<std::int64_t>::max() - 1;
+  Order({Wanted("a", 1)}, "s");
+  utime_ = 1'000'000;
+
+  for (int second = 0; second < 9; ++second) {
+    RunUntil(now_us_ + kSecond);
+    EXPECT_EQ(Order({}, "s"), OrdersOutcome::kStale) << second;
+  }
+  RunUntil(now_us_ + kSecond);
+  EXPECT_EQ(Order({Wanted("a", 2)}, "s"), OrdersOutcome::kTaken);
+  EXPECT_EQ(Order({Wanted("a", 2)}, "s"), OrdersOutcome::kTaken) << "and from then on it grows";
+  utime_ -= 2;
+  EXPECT_EQ(Order({}, "s"), OrdersOutcome::kStale);
+}
+
 TEST_F(DeputyTest, AClockThatIsAnHourOffChangesNothing) {
   for (const std::int64_t off_us : {-3600 * kSecond, 0 * kSecond, 3600 * kSecond}) {
     utime_ = 1'000'000'000'000 + off_us;
@@ -297,6 +313,9 @@ TEST_F(DeputyTest, OrdersForOthersAndBrokenOnesAreLeftAlone) {
       OrdersOutcome::kForOther);
   EXPECT_EQ(Order({Wanted("", 1)}), OrdersOutcome::kInvalid);
   EXPECT_EQ(Order({Wanted("a", 1), Wanted("a", 2)}), OrdersOutcome::kInvalid);
+  const std::string too_long(Deputy::kMaxIdBytes + 1, 'x');
+  EXPECT_EQ(Order({Wanted(too_long, 1)}), OrdersOutcome::kInvalid);
+  EXPECT_EQ(Order({Wanted("a", 1)}, too_long), OrdersOutcome::kInvalid);
   EXPECT_FALSE(deputy_.has_orders());
 }
 
