@@ -32,6 +32,8 @@ constexpr std::size_t kLastOutputBytes = 4U << 20;
 // Remains get SIGKILL; how often it is looked whether they are gone, and how long.
 constexpr std::int64_t kLookAgainUs = 5'000;
 constexpr std::int64_t kRemainsTimeUs = 2'000'000;
+// So often in a row nothing must be found of an earlier life.
+constexpr int kCleanLooks = 5;
 // LCM's bound.
 constexpr std::size_t kLongestChannel = 63;
 
@@ -217,18 +219,26 @@ void ChildSet::Signal(std::int32_t pid, int signal) {
   }
 }
 
+// Not those of a deputy that runs under this one and may have a command of the same id.
+bool ChildSet::HasMarks(pid_t pid, const Child& child) const {
+  return host::HasVariable(pid, std::string(kCommandVariable) + '=' + child.command_id) &&
+         host::HasVariable(pid, std::string(kDeputyVariable) + '=' + deputy_mark_);
+}
+
 // All that came from a command: its session, what was seen as its own before, orphans that carry
 // its mark, and what descends from any of them.
 std::vector<host::ProcessEntry> ChildSet::MembersOf(pid_t pid,
                                                     Child& child,
                                                     const host::ProcessTable& table) const {
   std::map<pid_t, host::ProcessEntry> members;
-  const std::string mark = std::string(kCommandVariable) + '=' + child.command_id;
+  // Once an ended command is reaped its pid is free.
+  const host::ProcessEntry* const leader = table.Find(pid);
+  const bool is_pid_reused = leader != nullptr && leader->start_ticks != child.start_ticks;
   for (const host::ProcessEntry& process : table.entries()) {
-    const bool is_own = process.pid == pid || process.session == pid ||
+    const bool is_own = (!is_pid_reused && (process.pid == pid || process.session == pid)) ||
                         child.members.contains({process.pid, process.start_ticks}) ||
                         (process.ppid == getpid() && !children_.contains(process.pid) &&
-                         !IsEnded(process) && host::HasVariable(process.pid, mark));
+                         !IsEnded(process) && HasMarks(process.pid, child));
     if (!is_own) continue;
     members.emplace(process.pid, process);
     for (const host::ProcessEntry& descendant : table.Descendants(process.pid)) {
@@ -259,13 +269,11 @@ std::vector<host::ProcessEntry> ChildSet::UnclaimedOrphans(const host::ProcessTa
   std::vector<host::ProcessEntry> orphans;
   for (const host::ProcessEntry& process : table.entries()) {
     if (process.ppid != getpid() || IsEnded(process) || children_.contains(process.pid)) continue;
-    const bool is_known =
-        std::any_of(children_.begin(), children_.end(), [&process](const auto& entry) {
-          return process.session == entry.first ||
-                 entry.second.members.contains({process.pid, process.start_ticks}) ||
-                 host::HasVariable(process.pid,
-                                   std::string(kCommandVariable) + '=' + entry.second.command_id);
-        });
+    const bool is_known = std::any_of(children_.begin(), children_.end(), [&](const auto& entry) {
+      return process.session == entry.first ||
+             entry.second.members.contains({process.pid, process.start_ticks}) ||
+             HasMarks(process.pid, entry.second);
+    });
     if (!is_known) orphans.push_back(process);
   }
   return orphans;
@@ -377,13 +385,22 @@ std::int32_t ChildSet::CommandPidOf(std::int32_t pid) const {
 
 int ChildSet::KillLeftovers() {
   const std::string mark = std::string(kDeputyVariable) + '=' + deputy_mark_;
-  int count = 0;
-  const host::ProcessTable table = host::ProcessTable::Read();
-  for (const host::ProcessEntry& process : table.entries()) {
-    if (process.pid == getpid() || !host::HasVariable(process.pid, mark)) continue;
-    if (host::SendSignal(process.pid, process.start_ticks, SIGKILL)) ++count;
+  const std::int64_t until_us = runtime_.MonotonicUs() + kRemainsTimeUs;
+  std::set<std::pair<pid_t, std::uint64_t>> killed;
+  // They may be having children while it is looked, and hold what new ones will want.
+  for (int clean_looks = 0; clean_looks < kCleanLooks && runtime_.MonotonicUs() < until_us;) {
+    ++clean_looks;
+    const host::ProcessTable table = host::ProcessTable::Read();
+    for (const host::ProcessEntry& process : table.entries()) {
+      if (process.pid == getpid() || IsEnded(process)) continue;
+      if (!host::HasVariable(process.pid, mark)) continue;
+      if (!host::SendSignal(process.pid, process.start_ticks, SIGKILL)) continue;
+      killed.emplace(process.pid, process.start_ticks);
+      clean_looks = 0;
+    }
+    usleep(kLookAgainUs);
   }
-  return count;
+  return static_cast<int>(killed.size());
 }
 
 }  // namespace clearway

@@ -55,8 +55,8 @@ class ChildSet final : public Machine {
   /// Takes in what has ended; to be called on SIGCHLD.
   void Reap();
 
-  /// SIGKILL to what an earlier life of this deputy, which did not end by itself, left behind.
-  /// Returns how many there were. @pre that life is over.
+  /// SIGKILL to what an earlier life of this deputy, which did not end by itself, left behind,
+  /// until it is gone, for at most 2 s. Returns how many there were. @pre that life is over.
   int KillLeftovers();
 
  private:
@@ -77,6 +77,7 @@ class ChildSet final : public Machine {
                                         const core::procman::CommandSpec& spec);
   void WatchOutput(pid_t pid, const Child& child);
   void ReadOutput(pid_t pid, std::size_t max_bytes);
+  [[nodiscard]] bool HasMarks(pid_t pid, const Child& child) const;
   [[nodiscard]] std::vector<host::ProcessEntry> MembersOf(pid_t pid,
                                                           Child& child,
                                                           const host::ProcessTable& table) const;
