@@ -39,6 +39,13 @@ std::size_t TextBytes(const process::Runtime& runtime, const std::string& id) {
   return most > 2 * header ? most - header : header;
 }
 
+// For this program's own messages, a line each, of what may come from anywhere.
+std::string OneLine(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7F; }, '?');
+  return text;
+}
+
 std::vector<std::byte> ContentOf(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::vector<std::byte> bytes;
@@ -203,7 +210,7 @@ void DeputyProcess::OnStatus(const std::string& channel, const status_t& message
 }
 
 void DeputyProcess::Note(const std::string& command_id, const std::string& text) {
-  process::LogInfo(command_id + ": " + text);
+  process::LogInfo(OneLine(command_id + ": " + text));
   logs_.WriteNote(command_id, text, runtime_.UtimeNow());
   output_.Add(command_id, "--- " + text + '\n', runtime_.MonotonicUs());
 }
@@ -311,6 +318,7 @@ core::procman::DeputyHealth DeputyProcess::Health() const {
   const auto add = [&health](const std::string& text) {
     if (!text.empty()) health.text += (health.text.empty() ? "" : "; ") + text;
   };
+  add(keeping_problem_);
   add(logs_.Problem());
   const std::string rival = deputy_.ledger().Rival(now_us);
   if (!rival.empty()) {
@@ -346,7 +354,7 @@ void DeputyProcess::SetTrouble(const std::string& text) {
 }
 
 void DeputyProcess::Say(const std::string& text) {
-  process::LogWarning(text);
+  process::LogWarning(OneLine(text));
   output_.Add("", text + '\n', runtime_.MonotonicUs());
 }
 
@@ -367,11 +375,11 @@ void DeputyProcess::Resume() {
     const std::filesystem::path aside = settings_.orders_file.string() + ".unreadable";
     std::error_code ignored;
     std::filesystem::rename(settings_.orders_file, aside, ignored);
-    trouble_ =
+    keeping_problem_ =
         settings_.orders_file.string() +
         (message ? ": orders of another deputy, \"" + message->deputy_id + '"' : ": not orders") +
         "; put aside, nothing was started";
-    Say(trouble_);
+    Say(keeping_problem_);
     return;
   }
   process::LogInfo("carrying on with the last orders, " + settings_.orders_file.string());
@@ -389,10 +397,10 @@ void DeputyProcess::KeepOrders() {
     host::ReplaceFile(settings_.orders_file,
                       {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     kept_ = std::move(bytes);
-    trouble_.clear();
+    keeping_problem_.clear();
   } catch (const std::runtime_error& error) {
-    if (trouble_ != error.what()) Say(error.what());
-    trouble_ = error.what();
+    if (keeping_problem_ != error.what()) Say(error.what());
+    keeping_problem_ = error.what();
   }
 }
 

@@ -118,6 +118,7 @@ class DeputyProcess final : private Machine::Listener, private core::procman::Co
   std::vector<std::byte> kept_;           // What stands in the orders file.
   std::string config_digest_;
   std::string trouble_;
+  std::string keeping_problem_;  // Until orders have been kept (again).
   std::int64_t session_;
   std::int64_t health_sequence_ = 0;
   std::int64_t nonce_;

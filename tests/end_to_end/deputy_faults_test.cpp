@@ -287,6 +287,8 @@ TEST_F(DeputyFaultsTest, WithoutASheriffItRunsItsScriptForItsOwnCommandsAndASher
 TEST_F(DeputyFaultsTest, AScriptThatIsNotThereIsToldAndNothingElseSuffers) {
   StartDeputyAndAwait("d",
                       {"--set",
+                       "deputy.state_folder=" + (folder_.path() / "state").string(),
+                       "--set",
                        "deputy.by_itself.deployment=/nowhere.pmd",
                        "--set",
                        "deputy.by_itself.script=up",
@@ -296,7 +298,9 @@ TEST_F(DeputyFaultsTest, AScriptThatIsNotThereIsToldAndNothingElseSuffers) {
   EXPECT_TRUE(peer_.Await(
       [&] { return peer_.health["d"].text.find("/nowhere.pmd") != std::string::npos; }));
   peer_.Order("d", {Wanted("a", "sleep 50")});
-  EXPECT_TRUE(peer_.AwaitRunning("d", "a", 1));
+  EXPECT_TRUE(peer_.AwaitState("d", "a", State::kRunning));
+  EXPECT_THAT(peer_.health["d"].text, HasSubstr("/nowhere.pmd"))
+      << "orders that are kept end no trouble";
 }
 
 // This test has a network of its own: its multicast route goes and comes.
