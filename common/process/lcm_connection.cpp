@@ -27,6 +27,11 @@ namespace {
 // sequence numbers of our types then show the gap.
 constexpr int kQueueCapacity = 2000;
 
+// Where there is a route but nothing comes back, behind a firewall say, LCM's test of itself waits
+// 10 s for its message. The pause after an attempt is so many times as long as it took, so that who
+// waits for a network has most of his time for other work.
+constexpr int kPauseOfTries = 10;
+
 constexpr char kAdvice[] =
     " (LCM needs a multicast route; on a machine without a network: "
     "ip link set lo multicast on && ip route add 224.0.0.0/4 dev lo)";
@@ -131,7 +136,12 @@ bool LcmConnection::KeepOpen() {
     }
     Close();
   }
-  return Open();
+  const auto begin = std::chrono::steady_clock::now();
+  if (begin < next_try_) return false;
+  const bool was_opened = Open();
+  const auto end = std::chrono::steady_clock::now();
+  next_try_ = end + kPauseOfTries * (end - begin);
+  return was_opened;
 }
 
 bool LcmConnection::Publish(const std::string& channel, std::span<const std::byte> bytes) {

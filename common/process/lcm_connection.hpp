@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <exception>
 #include <functional>
@@ -81,6 +82,7 @@ class LcmConnection {
   bool has_sent_ = false;
   std::list<Subscription> subscriptions_;  // A list: LCM keeps pointers to its elements.
   std::exception_ptr handler_error_;
+  std::chrono::steady_clock::time_point next_try_;
 };
 
 }  // namespace clearway::process
