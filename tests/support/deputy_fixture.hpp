@@ -39,6 +39,7 @@ class DeputyProgramTest : public testing::Test {
       more.emplace_back("--allow-any");
     }
     command.insert(command.end(), more.begin(), more.end());
+    command.insert(command.begin(), launcher_.begin(), launcher_.end());
     const std::string name = "deputy" + std::to_string(deputies_.size());
     deputies_.push_back(
         std::make_unique<host::ChildProcess>(name, command, folder_.path() / (name + ".log")));
@@ -78,6 +79,7 @@ class DeputyProgramTest : public testing::Test {
     return peer_.Await([&] { return OutputOf(id).find(text) != std::string::npos; });
   }
 
+  std::vector<std::string> launcher_;  ///< Words before a deputy's own: a program that starts it.
   TestFolder folder_;
   std::string url_{TestUrl(NextPort())};
   ProcmanPeer peer_{url_};
