@@ -2,12 +2,8 @@
 #include "processes/procman_deputy/deputy_process.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <stdexcept>
-#include <system_error>
 #include <utility>
 
-#include "common/host/atomic_file.hpp"
 #include "common/messages/channels.hpp"
 #include "common/messages/procman.hpp"
 #include "common/process/log.hpp"
@@ -29,7 +25,6 @@ constexpr std::int64_t kFirstInfoUs = 600'000;
 constexpr std::size_t kOutputHeaderBytes = 128;
 // Channels come from command lines.
 constexpr std::size_t kMaxStatusChannels = 256;
-constexpr std::size_t kRememberedInfos = 32;
 // A state goes out at once, but anybody may ask for it, and many commands may change together.
 constexpr PacedAction::Pace kStatePace{.interval_us = 50'000, .burst = 10};
 
@@ -46,13 +41,6 @@ std::string OneLine(std::string text) {
   return text;
 }
 
-std::vector<std::byte> ContentOf(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::vector<std::byte> bytes;
-  for (char c = 0; file.get(c);) bytes.push_back(static_cast<std::byte>(c));
-  return bytes;
-}
-
 }  // namespace
 
 DeputyProcess::DeputyProcess(process::Runtime& runtime,
@@ -65,6 +53,7 @@ DeputyProcess::DeputyProcess(process::Runtime& runtime,
       on_end_(std::move(on_end)),
       deputy_(settings_.id, settings_.respawn, settings_.health, *this),
       output_(settings_.output, TextBytes(runtime, settings_.id)),
+      kept_orders_(settings_.orders_file, settings_.id),
       logs_(settings_.logs),
       state_(runtime, kStatePace, [this] { PublishState(); }),
       keeping_(runtime, {}, [this] { KeepOrders(); }),
@@ -287,66 +276,6 @@ void DeputyProcess::EverySecond() {
   state_.Ask();
 }
 
-core::procman::DeputyReport DeputyProcess::Report() const {
-  core::procman::DeputyReport report{.utime = last_utime_,
-                                     .deputy_id = settings_.id,
-                                     .cpu_load = host_use_.cpu_load,
-                                     .phys_mem_total_bytes = host_use_.memory_total_bytes,
-                                     .phys_mem_free_bytes = host_use_.memory_free_bytes,
-                                     .swap_total_bytes = host_use_.swap_total_bytes,
-                                     .swap_free_bytes = host_use_.swap_free_bytes,
-                                     .commands = deputy_.Reports()};
-  for (core::procman::CommandReport& command : report.commands) {
-    const Machine::Use use = machine_.UseOf(command.pid);
-    command.cpu_usage = use.cpu_usage;
-    command.mem_vsize_bytes = use.vsize_bytes;
-    command.mem_rss_bytes = use.rss_bytes;
-  }
-  return report;
-}
-
-core::procman::DeputyHealth DeputyProcess::Health() const {
-  const std::int64_t now_us = runtime_.MonotonicUs();
-  core::procman::DeputyHealth health{.deputy_id = settings_.id,
-                                     .host = runtime_.HostName(),
-                                     .version = settings_.version,
-                                     .config_digest = config_digest_,
-                                     .sheriff_id = deputy_.ledger().current(),
-                                     .orders_age_us = deputy_.ledger().AgeUs(now_us),
-                                     .text = trouble_,
-                                     .commands = deputy_.Health(now_us)};
-  const auto add = [&health](const std::string& text) {
-    if (!text.empty()) health.text += (health.text.empty() ? "" : "; ") + text;
-  };
-  add(keeping_problem_);
-  add(logs_.Problem());
-  const std::string rival = deputy_.ledger().Rival(now_us);
-  if (!rival.empty()) {
-    add("two sheriffs command this deputy: " + deputy_.ledger().current() + " and " + rival);
-  }
-  if (rival_heard_us_ >= 0 && now_us - rival_heard_us_ < 3 * kSecondUs) {
-    add("another deputy has the same id");
-  }
-  for (core::procman::CommandHealthReport& command : health.commands) {
-    command.dropped_output_bytes = output_.DroppedBytes(command.id);
-  }
-  return health;
-}
-
-void DeputyProcess::PublishState() {
-  // Grows, so that nobody takes an old state for a new one when this host's clock steps back.
-  last_utime_ = std::max(last_utime_ + 1, runtime_.UtimeNow());
-  sent_utimes_.push_back(last_utime_);
-  if (sent_utimes_.size() > kRememberedInfos) sent_utimes_.pop_front();
-  process::Publish(runtime_, channels::kPmInfo, messages::ToLcm(Report()));
-  for (deputy_health_t& slice :
-       messages::ToLcm(Health(), last_utime_, runtime_.MaxMessageBytes(channels::kPmHealth.bus))) {
-    slice.session = session_;
-    slice.sequence = health_sequence_++;
-    process::Publish(runtime_, channels::kPmHealth, slice);
-  }
-}
-
 void DeputyProcess::SetTrouble(const std::string& text) {
   trouble_ = text;
   Say(text);
@@ -368,39 +297,19 @@ void DeputyProcess::SayRarely(const std::string& text) {
 }
 
 void DeputyProcess::Resume() {
-  if (settings_.orders_file.empty() || !std::filesystem::exists(settings_.orders_file)) return;
-  kept_ = ContentOf(settings_.orders_file);
-  const auto message = messages::Decode<procman_lcm::orders_t>(kept_);
-  if (!message || message->deputy_id != settings_.id) {
-    const std::filesystem::path aside = settings_.orders_file.string() + ".unreadable";
-    std::error_code ignored;
-    std::filesystem::rename(settings_.orders_file, aside, ignored);
-    keeping_problem_ =
-        settings_.orders_file.string() +
-        (message ? ": orders of another deputy, \"" + message->deputy_id + '"' : ": not orders") +
-        "; put aside, nothing was started";
-    Say(keeping_problem_);
-    return;
-  }
+  const auto commands = kept_orders_.Read();
+  if (!kept_orders_.problem().empty()) Say(kept_orders_.problem());
+  if (!commands) return;
   process::LogInfo("carrying on with the last orders, " + settings_.orders_file.string());
-  deputy_.Resume(messages::FromLcm(*message).commands, runtime_.MonotonicUs());
+  deputy_.Resume(*commands, runtime_.MonotonicUs());
   AfterEvent(true);
 }
 
 void DeputyProcess::KeepOrders() {
-  if (settings_.orders_file.empty() || is_shutting_down_) return;
-  core::procman::Orders orders{
-      .utime = 0, .deputy_id = settings_.id, .sheriff_id = "kept", .commands = deputy_.ToKeep()};
-  std::vector<std::byte> bytes = messages::Encode(messages::ToLcm(orders));
-  if (bytes == kept_) return;
-  try {
-    host::ReplaceFile(settings_.orders_file,
-                      {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    kept_ = std::move(bytes);
-    keeping_problem_.clear();
-  } catch (const std::runtime_error& error) {
-    if (keeping_problem_ != error.what()) Say(error.what());
-    keeping_problem_ = error.what();
+  if (is_shutting_down_) return;
+  const std::string before = kept_orders_.problem();
+  if (!kept_orders_.Write(deputy_.ToKeep()) && kept_orders_.problem() != before) {
+    Say(kept_orders_.problem());
   }
 }
 

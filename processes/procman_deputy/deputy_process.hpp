@@ -21,6 +21,7 @@
 #include "common/core/procman/output_queue.hpp"
 #include "common/process/runtime.hpp"
 #include "processes/procman_deputy/command_logs.hpp"
+#include "processes/procman_deputy/kept_orders.hpp"
 #include "processes/procman_deputy/machine.hpp"
 #include "processes/procman_deputy/paced_action.hpp"
 
@@ -108,6 +109,7 @@ class DeputyProcess final : private Machine::Listener, private core::procman::Co
   std::function<void()> before_first_start_;
   core::procman::Deputy deputy_;
   core::procman::OutputQueue output_;
+  KeptOrders kept_orders_;
   CommandLogs logs_;
   PacedAction state_;
   PacedAction keeping_;
@@ -115,10 +117,8 @@ class DeputyProcess final : private Machine::Listener, private core::procman::Co
   std::map<std::int32_t, std::string> ids_;  // Of running commands, by their processes.
   std::set<std::string> status_channels_;
   std::deque<std::int64_t> sent_utimes_;  // Of PM_INFO: what comes back from the bus is our own.
-  std::vector<std::byte> kept_;           // What stands in the orders file.
   std::string config_digest_;
   std::string trouble_;
-  std::string keeping_problem_;  // Until orders have been kept (again).
   std::int64_t session_;
   std::int64_t health_sequence_ = 0;
   std::int64_t nonce_;

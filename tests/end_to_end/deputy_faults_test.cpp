@@ -145,6 +145,8 @@ TEST_F(DeputyFaultsTest, TwoSheriffsAreReportedAndTheLastOneIsObeyed) {
   rival.Order("d", {Unwanted(Wanted("a", "sleep 50"))});
 
   ASSERT_TRUE(peer_.AwaitStopped("d", "a"));
+  peer_.Order("d", {Unwanted(Wanted("a", "sleep 50"))});
+  rival.Order("d", {Unwanted(Wanted("a", "sleep 50"))});
   EXPECT_TRUE(peer_.Await([&] {
     return peer_.health["d"].text == "two sheriffs command this deputy: rival:2:2 and test:1:1";
   })) << peer_.health["d"].text;

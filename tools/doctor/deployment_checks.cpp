@@ -209,7 +209,11 @@ class CommandChecker {
     const bool is_of_graph = StatusChannelOf(line.arguments.front()).has_value();
     const NamedConfig config = host_.read_config(*file, is_of_graph);
     if (!config.is_readable) {
-      Add(command, State::kProblem, "its --config " + *file + " cannot be read");
+      Finding& finding = Add(command, State::kProblem, "its --config " + *file + " cannot be read");
+      if (is_of_graph && !host_.graph_config.empty()) {
+        finding.mend = {"sudo install -D -m 644 " + ShellWord(host_.graph_config) + ' ' +
+                        ShellWord(*file)};
+      }
       return;
     }
     for (const std::string& problem : config.problems) Add(command, State::kProblem, problem);

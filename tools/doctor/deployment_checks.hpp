@@ -31,6 +31,7 @@ struct HostView {
   std::function<NamedConfig(const std::string& file, bool is_of_graph)> read_config;
   std::optional<core::procman::AllowList> allowed;  ///< Nothing: there is no host's file.
   std::string host_file;
+  std::string graph_config;  ///< A good one on this host; empty: none is known.
 };
 
 /// The commands of the deployment for one deputy: found, allowed, with a status and files that are

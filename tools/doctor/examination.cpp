@@ -228,6 +228,7 @@ class Examination {
       return config;
     };
     host.host_file = host_file_name_;
+    if (!graph_.facts.digest.empty()) host.graph_config = graph_.facts.path;
     if (host_file_) host.allowed.emplace(host_file_->allow);
     Append(findings_, CheckCommands(*deployment_, here_.deputy, host));
   }

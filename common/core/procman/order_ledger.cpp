@@ -25,7 +25,8 @@ OrderLedger::Verdict OrderLedger::Judge(const std::string& sheriff_id,
     return utime == known->second.utime ? Verdict::kRepeated : Verdict::kStale;
   }
   if (known == sheriffs_.end() && sheriffs_.size() >= kMaxSheriffs) ForgetTheOldest();
-  sheriffs_[sheriff_id] = {utime, now_us};
+  const std::int64_t since_us = known == sheriffs_.end() ? now_us : known->second.since_us;
+  sheriffs_[sheriff_id] = {utime, now_us, since_us};
   current_ = sheriff_id;
   return Verdict::kNew;
 }
@@ -37,8 +38,10 @@ std::int64_t OrderLedger::AgeUs(std::int64_t now_us) const {
 
 std::string OrderLedger::Rival(std::int64_t now_us) const {
   if (AgeUs(now_us) < 0 || AgeUs(now_us) > kActiveUs) return {};
+  const std::int64_t since_us = sheriffs_.at(current_).since_us;
   for (const auto& [id, sheriff] : sheriffs_) {
-    if (id != current_ && now_us - sheriff.heard_us <= kActiveUs) return id;
+    const bool is_recent = now_us - sheriff.heard_us <= kActiveUs;
+    if (id != current_ && is_recent && sheriff.heard_us >= since_us) return id;
   }
   return {};
 }

@@ -26,13 +26,15 @@ class OrderLedger {
   /// Since then [us]; -1: never.
   [[nodiscard]] std::int64_t AgeUs(std::int64_t now_us) const;
 
-  /// The other sheriff, while two command at once; empty: there is none.
+  /// The other sheriff, while two command at once: it spoke less than 3 s ago, and after the
+  /// current one had begun. Empty: there is none.
   [[nodiscard]] std::string Rival(std::int64_t now_us) const;
 
  private:
   struct Sheriff {
     std::int64_t utime = 0;
     std::int64_t heard_us = 0;
+    std::int64_t since_us = 0;  // Its first orders.
   };
   void ForgetTheOldest();
 

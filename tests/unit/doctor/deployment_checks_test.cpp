@@ -162,6 +162,10 @@ TEST(Commands, AMissingConfigurationIsAProblem) {
   host.read_config = [](const std::string&, bool) { return NamedConfig{}; };
 
   EXPECT_THAT(CheckOne(kGood, host)[0].text, HasSubstr("--config /etc/g.xml cannot be read"));
+  EXPECT_THAT(CheckOne(kGood, host)[0].mend, IsEmpty());
+  host.graph_config = "config/lab.xml";
+  EXPECT_THAT(CheckOne(kGood, host)[0].mend,
+              ElementsAre("sudo install -D -m 644 config/lab.xml /etc/g.xml"));
 }
 
 TEST(Commands, OfOtherProgramsMayHaveConfigurationsOfAnotherKind) {

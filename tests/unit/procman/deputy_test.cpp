@@ -292,6 +292,12 @@ TEST_F(DeputyTest, AClockThatIsAnHourOffChangesNothing) {
 
 TEST_F(DeputyTest, TwoSheriffsAreToldAndTheLastOneIsObeyed) {
   Order({Wanted("a", 1)}, "one");
+  now_us_ += 10;
+  Order({Wanted("a", 1, true)}, "two");
+  EXPECT_EQ(deputy_.ledger().Rival(now_us_), "") << "one may have ended";
+  now_us_ += 10;
+  Order({Wanted("a", 1)}, "one");
+  now_us_ += 10;
   Order({Wanted("a", 1, true)}, "two");
 
   EXPECT_EQ(deputy_.ledger().current(), "two");
