@@ -32,7 +32,8 @@ constexpr std::size_t kLastOutputBytes = 4U << 20;
 // Remains get SIGKILL; how often it is looked whether they are gone, and how long.
 constexpr std::int64_t kLookAgainUs = 5'000;
 constexpr std::int64_t kRemainsTimeUs = 2'000'000;
-// So often in a row nothing must be found of an earlier life.
+// So often in a row nothing must be found of an earlier life, or of a command that had children:
+// one look may miss what hops from process to process.
 constexpr int kCleanLooks = 5;
 // LCM's bound.
 constexpr std::size_t kLongestChannel = 63;
@@ -246,6 +247,7 @@ std::vector<host::ProcessEntry> ChildSet::MembersOf(pid_t pid,
     }
   }
   std::vector<host::ProcessEntry> found;
+  child.had_children = child.had_children || members.size() > 1;
   child.members.clear();
   for (const auto& [member_pid, process] : members) {
     child.members.emplace(member_pid, process.start_ticks);
@@ -306,7 +308,9 @@ void ChildSet::FinishEnded() {
   for (auto& [pid, child] : children_) {
     if (!child.wait_status) continue;
     const bool remains = !table || KillRemains(pid, child, *table);
-    if (remains && runtime_.MonotonicUs() - child.ended_us < kRemainsTimeUs) {
+    child.clean_looks = remains ? 0 : child.clean_looks + 1;
+    const bool is_gone = child.clean_looks >= (child.had_children ? kCleanLooks : 1);
+    if (!is_gone && runtime_.MonotonicUs() - child.ended_us < kRemainsTimeUs) {
       is_left = true;
       continue;
     }

@@ -65,7 +65,9 @@ class ChildSet final : public Machine {
     std::uint64_t start_ticks = 0;
     host::Descriptor output;
     std::set<std::pair<pid_t, std::uint64_t>> members;  // Seen so far, with their start times.
-    std::optional<int> wait_status;                     // Once it has ended.
+    bool had_children = false;
+    std::optional<int> wait_status;  // Once it has ended.
+    int clean_looks = 0;             // In a row, since then: nothing was left of it.
     std::int64_t ended_us = 0;
     std::uint64_t cpu_ticks = 0;
     Use use;
