@@ -37,6 +37,7 @@ TEST_F(DeputyFaultsTest, KilledItTakesItsChildrenAlongAndItsNextLifeCarriesOn) {
                Wanted("ended", "echo once", 2)});
   ASSERT_TRUE(peer_.AwaitRunning("d", "runs", 4));
   ASSERT_TRUE(peer_.AwaitState("d", "ended", State::kEnded));
+  ASSERT_TRUE(AwaitOutput("ended", "exited with 0"));
   ASSERT_TRUE(peer_.Await([] { return PidWith("sleep 7201") != 0; }));
   const std::int32_t old_pid = peer_.Command("d", "runs").pid;
 
