@@ -177,6 +177,7 @@ TerminalChild StartOnTerminal(const ChildSettings& settings) {
   plan.parent_death_signal = settings.parent_death_signal;
   const pid_t pid = ForkWithSignalsBlocked(plan);
   if (pid < 0) Fail("cannot start " + program);
+  terminal.slave.Reset();
   // It is there, if only as a zombie: nobody but this process can reap it.
   const auto entry = ReadProcess(pid);
   if (!entry) {  // Without its start time nobody could ever stop it.
