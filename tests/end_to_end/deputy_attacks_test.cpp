@@ -268,5 +268,24 @@ TEST_F(DeputyAttackTest, WhatHopsOnAfterTheDeputyWasKilledIsCaughtByItsNextLife)
   EXPECT_EQ(SizeOf("hops"), hops);
 }
 
+TEST_F(DeputyAttackTest, ADeputyUnderADeputyWithACommandOfTheSameId) {
+  StartDeputyAndAwait("d");
+  const std::string inner = "clearway-deputy --id inner --allow-any --allow-root --lcm-url " +
+                            url_ + "?ttl=0 --set deputy.logs.folder=" + PathOf("inner");
+  peer_.Order("d", {Wanted("a", "sleep 50"), Wanted("deputy", inner)});
+  ASSERT_TRUE(peer_.AwaitDeputy("inner"));
+  peer_.Order("inner",
+              {Wanted("a", "sh -c '(setsid sleep 7901 &) ; setsid sleep 7902 & sleep 7903'")});
+  ASSERT_TRUE(peer_.Await([] { return PidWith("sleep 7903") != 0 && PidWith("sleep 7901") != 0; }));
+  const auto pid = peer_.Command("d", "a").pid;
+
+  kill(peer_.Command("d", "deputy").pid, SIGKILL);
+
+  ASSERT_TRUE(peer_.AwaitState("d", "deputy", State::kEnded));
+  for (const char* name : {"sleep 7901", "sleep 7902", "sleep 7903"})
+    EXPECT_EQ(PidWith(name), 0) << name;
+  EXPECT_TRUE(IsAlive(pid));
+}
+
 }  // namespace
 }  // namespace clearway::test
