@@ -100,6 +100,7 @@ void ManagedCommand::Remove(std::int64_t now_us) {
 }
 
 void ManagedCommand::KeepFromStarting() {
+  if (should_run_ && (pid_ != 0 || state_ == CommandState::kBackingOff)) ends_with_deputy_ = true;
   should_run_ = false;
   if (state_ == CommandState::kBackingOff) Rest(CommandState::kStopped, "the deputy stops");
 }
@@ -250,6 +251,9 @@ CommandHealthReport ManagedCommand::Health(std::int64_t now_us) const {
                              .starts = starts_,
                              .quick_deaths = respawn_.quick_deaths(),
                              .running_us = pid_ != 0 ? now_us - started_us_ : -1};
+  // To a sheriff "stopped" is an order of somebody, which it takes over: this is none, and a later
+  // life goes on with it.
+  if (ends_with_deputy_ && state_ == CommandState::kStopped) report.state = CommandState::kStopping;
   if (health_) {
     report.health = health_->health();
     if (state_ == CommandState::kRunning) report.text = health_->text();

@@ -76,7 +76,8 @@ class ManagedCommand {
   std::int32_t run_id_ = 0;
   bool should_run_ = false;
   bool is_removed_ = false;
-  bool was_unhealthy_ = false;  // It is being stopped for that.
+  bool was_unhealthy_ = false;     // It is being stopped for that.
+  bool ends_with_deputy_ = false;  // And for no other reason.
 
   CommandState state_ = CommandState::kStopped;
   std::string text_;

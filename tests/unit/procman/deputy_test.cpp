@@ -367,6 +367,20 @@ TEST_F(DeputyTest, ShutDownStopsOneAfterTheOtherInReverseOrderOfTheirStarts) {
   (void)z;
 }
 
+TEST_F(DeputyTest, WhatShutDownEndsIsNotToldAsStoppedByOrder) {
+  Order({Wanted("a", 1), Wanted("b", 1), Wanted("done", 1)});
+  End("done", 0);
+  Order({Wanted("a", 1), Wanted("b", 1, true), Wanted("done", 1)});
+  End("b", 0);
+
+  deputy_.ShutDown(now_us_);
+  End("a", 0);
+
+  EXPECT_EQ(HealthOf("a").state, CommandState::kStopping) << "a sheriff would keep it down";
+  EXPECT_EQ(HealthOf("b").state, CommandState::kStopped);
+  EXPECT_EQ(HealthOf("done").state, CommandState::kEnded);
+}
+
 TEST_F(DeputyTest, AStatusMakesReadyAndSilenceMakesUnhealthy) {
   commands_.next.status_channel = "X_STATUS";
   Order({Wanted("a", 1)});
