@@ -186,6 +186,21 @@ class HostsTest(unittest.TestCase):
                 "--allow-root --extra word")
             self.assertIn("ended", said)
 
+    def test_a_deputy_that_ends_at_once_is_told(self):
+        programs = self.folder / "bin"
+        programs.mkdir()
+        (programs / "clearway-relay").symlink_to(PROGRAMS / "clearway-relay")
+        (programs / "clearway-deputy").write_text("#!/bin/sh\necho no such option >&2\nexit 64\n",
+                                                  encoding="utf-8")
+        (programs / "clearway-deputy").chmod(0o755)
+        self.expect_success(self.up())
+
+        result = self.hosts("deputies", "--", "--typo", env={"CLEARWAY_BIN": str(programs)})
+
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(f"the deputy of {self.robot} ended: no such option", result.stderr)
+        self.expect_success(self.hosts("down"))
+
     def test_run_gives_back_what_the_command_does(self):
         result = hosts("--prefix", self.prefix, "run", self.robot, self.laptop, "--", "sh", "-c",
                        f'"{HOSTS}" exec {self.laptop} hostname; cat /proc/sys/kernel/hostname; '
