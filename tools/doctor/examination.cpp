@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -132,8 +133,11 @@ class Examination {
     } else {
       Add({kCheck, State::kNotChecked, std::string("there is no ") + kHostFile, {}});
       if (!arguments_.deployment.empty()) {
-        findings_.back().mend = {"sudo install -D -m 644 " CLEARWAY_PROCMAN_FOLDER "/deputy.xml " +
-                                 host_file_name_};
+        constexpr const char* kExample = CLEARWAY_PROCMAN_FOLDER "/deputy.xml";
+        auto& mend = findings_.back().mend;
+        if (!std::filesystem::exists(kExample))
+          mend.push_back("sudo cmake --install build/release");
+        mend.push_back(std::string("sudo install -D -m 644 ") + kExample + " " + host_file_name_);
       }
     }
     const bool is_bus_open = arguments_.config.empty() && arguments_.lcm_url.empty();
