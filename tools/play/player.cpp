@@ -107,10 +107,12 @@ void Player::ReportState(std::int8_t code) {
   node_.SetCounter("scans_played", static_cast<std::int64_t>(progress_.played));
   node_.SetCounter("scans_unreadable", static_cast<std::int64_t>(progress_.unreadable));
   node_.SetCounter("scans_total", static_cast<std::int64_t>(source_.size()));
-  node_.SetState({code,
-                  true,
-                  "played " + std::to_string(progress_.played) + " of " +
-                      std::to_string(source_.size()) + " scans"});
+  const std::string size = std::to_string(source_.size());
+  node_.SetState(
+      {code,
+       true,
+       "played " + std::to_string(progress_.played) +
+           (settings_.loop ? " scans, in a loop of " + size : " of " + size + " scans")});
 }
 
 }  // namespace clearway::play

@@ -187,6 +187,7 @@ TEST_F(PlayerTest, ALoopGoesOnWithStampsAndScanIds) {
 
   EXPECT_EQ(done_, 0);
   ASSERT_GE(arrived_.size(), 60U);
+  EXPECT_THAT(statuses_.back().text, testing::EndsWith(" scans, in a loop of 2"));
   for (std::size_t i = 0; i < arrived_.size(); ++i) {
     const lidar_points_t& message = arrived_[i].message;
     const auto scan = static_cast<std::int64_t>(i / 10);
