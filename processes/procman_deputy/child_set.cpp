@@ -114,7 +114,7 @@ StartOutcome ChildSet::Start(const CommandSpec& spec) {
   if (!parsed.line) return NotStarted(std::move(parsed.problem), true);
   if (allowed_) {
     std::string why = allowed_->WhyRefused(*parsed.line);
-    if (!why.empty()) return NotStarted("refused: " + std::move(why), true);
+    if (!why.empty()) return NotStarted(why + ": see <allow> in its deputy.xml", true);
   }
   return StartLine(*parsed.line, spec);
 }
@@ -140,7 +140,8 @@ StartOutcome ChildSet::StartLine(const ExecLine& line, const CommandSpec& spec) 
   }
   const auto program = host::FindProgram(line.arguments.front(), path_);
   if (!program)
-    return NotStarted("no program \"" + line.arguments.front() + "\" in " + path_, false);
+    return NotStarted(
+        "no program \"" + line.arguments.front() + "\" beside the deputy, nor in its PATH", false);
   if (!host::HasDescriptorsToSpare())
     return NotStarted("too few file descriptors are left (ulimit -n)", false);
   try {

@@ -222,7 +222,7 @@ TEST_F(DeputyFaultsTest, OnlyWhatTheHostsFileAllowsRunsAndTheRestIsRefusedWithAR
   for (const char* id : {"argument", "more", "program", "variable", "shell"}) {
     EXPECT_TRUE(peer_.AwaitState("d", id, State::kRefused)) << id;
     EXPECT_EQ(peer_.Command("d", id).exit_code, 126 << 8);
-    EXPECT_TRUE(AwaitOutput(id, "refused")) << id;
+    EXPECT_TRUE(AwaitOutput(id, "see <allow>")) << id;
   }
   EXPECT_THAT(peer_.HealthOf("d", "program").text, HasSubstr("\"rm\""));
   EXPECT_THAT(peer_.HealthOf("d", "variable").text, HasSubstr("LD_PRELOAD"));
