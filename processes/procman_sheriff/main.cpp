@@ -2,6 +2,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <stdexcept>
 #include <string_view>
 #include <unistd.h>
@@ -81,11 +82,15 @@ std::string TakeWords(std::vector<std::string> words, SheriffRequest& request) {
   std::string file;
   if (!words.empty() && !VerbOf(words.front())) {
     file = words.front();
+    // A path that is wrong is told by the reader of files.
+    if (file.find_first_of("./") == std::string::npos && !std::filesystem::exists(file)) {
+      throw UsageError("\"" + file + "\" is no file and no verb; verbs: " + KnownVerbs());
+    }
     words.erase(words.begin());
   }
   if (!words.empty()) {
     const auto verb = VerbOf(words.front());
-    if (!verb) throw UsageError("\"" + words.front() + "\" is no verb; see --help");
+    if (!verb) throw UsageError("\"" + words.front() + "\" is no verb; verbs: " + KnownVerbs());
     request.verb = *verb;
     words.erase(words.begin());
   } else if (!file.empty() && !request.json && HasScreen()) {
@@ -185,7 +190,12 @@ int Run(Arguments& arguments) {
   }
   if (request.verb == SheriffVerb::kRun &&
       FindScript(*request.deployment, request.targets.front()) == nullptr) {
-    throw UsageError(file + " has no script \"" + request.targets.front() + "\"");
+    std::string known;
+    for (const auto& script : request.deployment->scripts) {
+      known += (known.empty() ? "" : ", ") + script.name;
+    }
+    throw UsageError(file + " has no script \"" + request.targets.front() +
+                     "\"; known: " + (known.empty() ? "none" : known));
   }
   const bool observes_on_screen =
       request.verb == SheriffVerb::kObserve && !request.json && HasScreen();

@@ -82,6 +82,12 @@ std::optional<SheriffVerb> VerbOf(std::string_view word) {
   return std::nullopt;
 }
 
+std::string KnownVerbs() {
+  std::string list;
+  for (const auto& [name, verb] : kVerbs) list.append(list.empty() ? "" : ", ").append(name);
+  return list;
+}
+
 NamedTarget FindTarget(const std::string& word, const std::vector<CommandSpec>& commands) {
   constexpr std::string_view kCommandPrefix = "cmd:";
   constexpr std::string_view kGroupPrefix = "group:";

@@ -34,6 +34,8 @@ enum class SheriffVerb {
 
 /// Nothing when the word is none.
 [[nodiscard]] std::optional<SheriffVerb> VerbOf(std::string_view word);
+/// All of them, for messages.
+[[nodiscard]] std::string KnownVerbs();
 
 /// Gives orders, and therefore asks whether another sheriff does.
 [[nodiscard]] constexpr bool GivesOrders(SheriffVerb verb) {

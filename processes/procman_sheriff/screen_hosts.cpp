@@ -95,6 +95,7 @@ Line HostLine(const DeputyView& deputy, int width, int name_cells, const Common&
         .RightCell(std::to_string(deputy.commands), kCommandsCells);
   }
   if (!problems.empty()) return line.Add(problems, Style::kTrouble).Take();
+  if (deputy.age_us < 0) return line.Add("is one running, with this id and URL?").Take();
   return line.Add(NoteOf(deputy), Style::kDim).Take();
 }
 

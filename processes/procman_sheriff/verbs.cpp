@@ -25,7 +25,10 @@ constexpr std::int64_t kQuickLookUs = 500'000;
 // Health comes with the answer.
 constexpr std::int64_t kHealthAnswersUs = 300'000;
 constexpr const char* kNobodyHeard =
-    "no deputy is heard: is one running, and is this its LCM address?";
+    "no deputy is heard: is one running, and is this its LCM address (-u)?";
+constexpr const char* kUnheardHint =
+    ": is clearway-deputy running there, with that id, on this LCM address (-u)? "
+    "\"clearway-sheriff status\" lists who is";
 
 SheriffProcess::Settings SettingsFor(SheriffVerb verb) {
   return {.mode = Sheriff::Mode::kObserve,
@@ -112,7 +115,7 @@ void SheriffVerbRun::Listen() {
   if (!unheard.empty() && !request_.force && request_.verb != SheriffVerb::kStop) {
     if (elapsed_us() >= kDeputyUnheardUs) {
       Finish(kSheriffUnheard,
-             unheard + "; nothing was started (--force starts what can be started)");
+             "nothing was started (--force starts what can be); " + unheard + kUnheardHint);
     }
     return;
   }
@@ -224,7 +227,7 @@ void SheriffVerbRun::Answer() {
   if (!request_.json) printer_.out(StatusTable(snapshot));
   const std::string unheard = Unheard(NeededDeputies());
   if (!unheard.empty()) {
-    Finish(kSheriffUnheard, unheard);
+    Finish(kSheriffUnheard, unheard + kUnheardHint);
   } else if (snapshot.deputies.empty()) {
     Finish(kSheriffUnheard, kNobodyHeard);
   } else {

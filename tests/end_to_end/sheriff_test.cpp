@@ -61,6 +61,20 @@ TEST_F(SheriffProgramTest, OneShotVerbsDoWhatTheySayAndTellByTheirExitStatus) {
   EXPECT_EQ(PidWith("echo tick"), 0);
 }
 
+TEST_F(SheriffProgramTest, AMistypedWordIsToldWithThoseThatThereAre) {
+  const std::string file = Write("test.pmd", kFile);
+
+  EXPECT_THAT(Sheriff({file, "run", "upp"}).err, HasSubstr("has no script \"upp\"; known: up"));
+  EXPECT_THAT(Sheriff({file, "sart", "lidar"}).err,
+              HasSubstr("\"sart\" is no verb; verbs: status,"));
+  const ProgramResult word = Sheriff({"staus"});
+  EXPECT_EQ(word.exit_status, 64);
+  EXPECT_THAT(word.err, HasSubstr("\"staus\" is no file and no verb; verbs: status, start"));
+  const ProgramResult path = Sheriff({"tset.pmd", "status"});
+  EXPECT_EQ(path.exit_status, 78);
+  EXPECT_THAT(path.err, HasSubstr("tset.pmd: no such file"));
+}
+
 TEST_F(SheriffProgramTest, ACommandMovesByOneWord) {
   StartDeputyAndAwait("d1");
   StartDeputyAndAwait("d2");

@@ -190,7 +190,8 @@ TEST_F(ProcmanSheriffTest, ADeputyThatIsNeededAndNotHeardIsNamed) {
 
   const Outcome start = Run(SheriffVerb::kStart, file, {"everything"});
   EXPECT_EQ(start.exit_status, kSheriffUnheard);
-  EXPECT_THAT(start.error.back(), HasSubstr("not heard: deputy away"));
+  EXPECT_THAT(start.error.back(),
+              HasSubstr("not heard: deputy away: is clearway-deputy running there"));
   EXPECT_FALSE(own.deputy().IsUp("a")) << "all or nothing, unless by force";
   EXPECT_EQ(Run(SheriffVerb::kStart, file, {"a"}).exit_status, 0) << "that one needs it not";
   const Outcome status = Run(SheriffVerb::kStatus, file);

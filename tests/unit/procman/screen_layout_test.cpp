@@ -173,6 +173,7 @@ TEST(ScreenLayout, HostsInTroubleHaveALineEvenWhenNotAllHave) {
   ScreenBed bed(content);
 
   EXPECT_THAT(bed.Text(), HasSubstr(" ! h17  NEVER HEARD"));
+  EXPECT_THAT(bed.Text(), HasSubstr("is one running, with this id and"));
   EXPECT_THAT(bed.Text(), HasSubstr("config differs: bbbbbbbb"));
   EXPECT_THAT(bed.Text(), HasSubstr("and 17 more: all well"));
   bed.size = {80, 12};
