@@ -18,6 +18,7 @@ ALLOWED = {
     "common/io": ["common/core"],
     "common/host": ["common/core"],
     "common/process": ["common/core", "common/messages"],
+    "common/net": ["common/core", "common/process"],
     "common/graph": ["common"],
     "processes": ["common"],
     "tools": ["common", "processes", "tools"],
@@ -36,7 +37,7 @@ LIBRARIES = {
     r"<cairo": ["tools/plot", "tests/unit/plot"],
     r"<yaml-cpp": ["common/io/map"],
     r"<png": ["common/io/map", "tests/unit/io"],
-    r"<zlib": ["common/core/mapping"],
+    r"<zlib": ["common/core/mapping", "common/core/livox"],
     r"<n?curses": ["processes/procman_sheriff/screen"],
 }
 

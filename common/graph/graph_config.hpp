@@ -8,8 +8,10 @@
 #include "common/config/config.hpp"
 #include "common/core/geometry/pose_source.hpp"
 #include "common/core/guard/stop_guard_config.hpp"
+#include "common/core/livox/driver_config.hpp"
 #include "common/core/perception/clustering/clusterer.hpp"
 #include "common/core/preprocessing/preprocessor.hpp"
+#include "common/core/simulation/simulator_config.hpp"
 #include "common/core/vehicle.hpp"
 #include "common/io/recording_config.hpp"
 #include "common/process/buses_config.hpp"
@@ -52,6 +54,8 @@ struct GraphConfig {
   core::StopGuardConfig stop_guard;
   MapServerConfig map_server;
   core::PoseSourceConfig pose_source;
+  core::livox::DriverConfig livox_driver;
+  core::SimulatorConfig simulator;
 
   /// Where relative paths of the configuration start: the folder of its file. Not a value of it.
   std::filesystem::path folder;
@@ -71,6 +75,8 @@ struct GraphConfig {
     visitor.Group("stop_guard", self.stop_guard, "Whether the robot may move.");
     visitor.Group("map_server", self.map_server, "Which map is known.");
     visitor.Group("pose_source", self.pose_source, "POSE without a localization.");
+    visitor.Group("livox_driver", self.livox_driver, "Livox sensors on the network.");
+    visitor.Group("simulator", self.simulator, "A lab, a robot and sensors that are not there.");
   }
 };
 

@@ -54,6 +54,8 @@ inline constexpr Channel<local_map_t> kLocalMap{"LOCAL_MAP", BusId::kShared};
 
 inline constexpr Channel<status_t> kPlayStatus{"PLAY_STATUS", BusId::kShared};
 inline constexpr Channel<status_t> kRunStatus{"RUN_STATUS", BusId::kShared};
+inline constexpr Channel<status_t> kLivoxDriverStatus{"LIVOX_DRIVER_STATUS", BusId::kShared};
+inline constexpr Channel<status_t> kSimulatorStatus{"SIMULATOR_STATUS", BusId::kShared};
 inline constexpr Channel<status_t> kPreprocessorStatus{"PREPROCESSOR_STATUS", BusId::kShared};
 inline constexpr Channel<status_t> kClustererStatus{"CLUSTERER_STATUS", BusId::kShared};
 inline constexpr Channel<status_t> kStopGuardStatus{"STOP_GUARD_STATUS", BusId::kShared};
@@ -63,6 +65,8 @@ inline constexpr Channel<status_t> kPoseSourceStatus{"POSE_SOURCE_STATUS", BusId
 /// All of them, for who looks at all processes.
 inline constexpr std::array kAllStatuses{kPlayStatus,
                                          kRunStatus,
+                                         kLivoxDriverStatus,
+                                         kSimulatorStatus,
                                          kPreprocessorStatus,
                                          kClustererStatus,
                                          kStopGuardStatus,
