@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "common/core/livox/commands.hpp"
 #include "common/core/livox/data_packet.hpp"
 #include "common/core/simulation/lidar_scan.hpp"
 #include "common/core/simulation/world.hpp"
@@ -19,8 +20,8 @@ struct SimulatedEcho {
   std::int32_t object = kNoObject;  ///< What it lies on: an object, kFloorObject or kNoObject.
 };
 
-/// The first and the strongest of the later echoes. Without dual return only the first slot of
-/// each shot is sent.
+/// The echoes of a shot. In dual return the first and the strongest of the later ones; else the one
+/// that the return mode asks for, and the second is all zero.
 struct SimulatedShot {
   std::array<SimulatedEcho, 2> echoes;
 };
@@ -33,12 +34,13 @@ class SimulatedLidar {
   /// Fires shots first_shot, first_shot + 1, ... (their directions: Mid70Direction()), one for each
   /// element of `shots`, all from T_map_sensor into the world as it is at `time_us` after the
   /// scene's start. Allocates nothing once sizes have settled.
-  /// @pre first_shot >= 0, time_us >= 0 and not less than in earlier calls for this world.
+  /// @pre first_shot >= 0, time_us >= 0.
   void Fire(World& world,
             std::int64_t time_us,
             const Eigen::Isometry3d& T_map_sensor,
             std::int64_t first_shot,
-            std::span<SimulatedShot> shots);
+            std::span<SimulatedShot> shots,
+            livox::ReturnMode mode = livox::ReturnMode::kDual);
 
  private:
   SimulatedLidarConfig config_;
