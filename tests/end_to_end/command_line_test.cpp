@@ -81,7 +81,7 @@ TEST_P(ProgramTest, TellsAllProblemsOfABadConfigurationAndStartsNothing) {
 }
 
 TEST_P(ProgramTest, TellsTheProblemsOfOverridesToo) {
-  const ProgramResult result = Run(With(Command(ShippedConfig("lab.xml")),
+  const ProgramResult result = Run(With(Command(ShippedConfig("lab_standing.xml")),
                                         {"--set",
                                          "stop_guard.permit_rate_hz=1",
                                          "--set",
@@ -113,7 +113,7 @@ TEST_P(ProgramTest, WrongOptionsAreUsageErrors) {
            {"--scene-seconds", "nan"},
            {"--settle", "nan"},
            {"--for", "nan"}}) {
-    const ProgramResult result = Run(With(Command(ShippedConfig("lab.xml")), wrong));
+    const ProgramResult result = Run(With(Command(ShippedConfig("lab_standing.xml")), wrong));
 
     EXPECT_EQ(result.exit_status, kUsage) << wrong.front();
     EXPECT_THAT(result.err, HasSubstr("--help")) << wrong.front();
@@ -140,12 +140,12 @@ TEST_P(ProgramTest, EveryShippedConfigurationIsSound) {
 
 TEST_P(ProgramTest, PrintsTheConfigurationInForceAndWhereItComesFrom) {
   const ProgramResult result =
-      Run(With(Command(ShippedConfig("lab.xml")),
+      Run(With(Command(ShippedConfig("lab_standing.xml")),
                {"--print-config", "--set", "preprocessor.voxel_grid.leaf_m=0.1"}));
 
   EXPECT_EQ(result.exit_status, kOk) << result.err;
   EXPECT_THAT(result.out, testing::ContainsRegex("preprocessor.voxel_grid.leaf_m = 0.1 .*--set"));
-  EXPECT_THAT(result.out, testing::ContainsRegex("vehicle.stationary = true .*lab.xml:"));
+  EXPECT_THAT(result.out, testing::ContainsRegex("vehicle.stationary = true .*lab_standing.xml:"));
   EXPECT_THAT(result.out, testing::ContainsRegex("stop_guard.permit_rate_hz = 50 .*default"));
 }
 
@@ -171,7 +171,7 @@ TEST_P(ProgramTest, AnswersHelpAndVersion) {
 
 TEST_P(ProgramTest, WithoutANetworkOneMessageSaysWhatToDo) {
   const ProgramResult result =
-      Run(With({"unshare", "--net"}, With(Command(ShippedConfig("lab.xml")), {})));
+      Run(With({"unshare", "--net"}, With(Command(ShippedConfig("lab_standing.xml")), {})));
 
   EXPECT_EQ(result.exit_status, kFailure);
   EXPECT_THAT(result.err, HasSubstr("ip route add 224.0.0.0/4 dev lo"));
@@ -190,7 +190,7 @@ class RecordingErrorTest : public testing::Test {
  protected:
   ProgramResult Play(const std::vector<std::string>& arguments) {
     return RunProgram(
-        With({Program("play"), "--config", ShippedConfig("lab.xml"), "--lcm-url", TestUrl(17401)},
+        With({Program("play"), "--config", ShippedConfig("lab_standing.xml"), "--lcm-url", TestUrl(17401)},
              arguments),
         folder_.path());
   }
@@ -203,7 +203,7 @@ TEST_F(RecordingErrorTest, AMissingRecordingIsToldInOneLine) {
   const ProgramResult play = Play({"--input", missing});
   const ProgramResult run = RunProgram({Program("run"),
                                         "--config",
-                                        ShippedConfig("lab.xml"),
+                                        ShippedConfig("lab_standing.xml"),
                                         "--output",
                                         folder_.path() / "output",
                                         "--input",

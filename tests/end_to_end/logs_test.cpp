@@ -32,7 +32,7 @@ class LogTest : public testing::Test {
     const ProgramResult result =
         RunProgram({Program("play"),
                     "--config",
-                    ShippedConfig("lab.xml"),
+                    ShippedConfig("lab_standing.xml"),
                     "--input",
                     SourceFolder() / "tests" / "support" / "free_room_scene.xml",
                     "--scene-seconds",
@@ -48,7 +48,7 @@ class LogTest : public testing::Test {
     return {Program("run"),
             "--headless",
             "--config",
-            ShippedConfig("lab.xml"),
+            ShippedConfig("lab_standing.xml"),
             "--lcm-url",
             url,
             "--set",  // As in the test of the recordings: a busy machine is not what is tested.

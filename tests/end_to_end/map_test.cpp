@@ -62,7 +62,7 @@ class MapTest : public RunningGraphTest {
   [[nodiscard]] RunningGraph GraphWithMap(const OccupancyGrid& map,
                                           const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments{"--config",
-                                       SourceFolder() / "config" / "lab.xml",
+                                       SourceFolder() / "config" / "lab_standing.xml",
                                        "--lcm-url",
                                        url_,
                                        "--set",

@@ -42,7 +42,7 @@ class PlotProgramTest : public testing::Test {
 
   // Half a second of the lab and what the graph makes of it.
   std::filesystem::path WriteLog() {
-    const std::string config = ShippedConfig("lab.xml");
+    const std::string config = ShippedConfig("lab_standing.xml");
     const ProgramResult played = Run({Program("play"),
                                       "--config",
                                       config,
@@ -79,7 +79,7 @@ class PlotProgramTest : public testing::Test {
   }
 
   ProgramResult Plot(const std::string& log, const std::vector<std::string>& more) {
-    return Run(With({Program("plot"), log, "--config", ShippedConfig("lab.xml")}, more));
+    return Run(With({Program("plot"), log, "--config", ShippedConfig("lab_standing.xml")}, more));
   }
 
   [[nodiscard]] std::string Path(const std::string& name) const { return folder_.path() / name; }

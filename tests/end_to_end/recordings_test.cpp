@@ -158,7 +158,7 @@ TEST_P(GeneratedLabTest, IsPlayedWithoutAnInputAndStopsAfterTheTimeGiven) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes,
                          GeneratedLabTest,
-                         testing::Values(Recording{"Lab", "", "lab.xml", 0, 5.0}),
+                         testing::Values(Recording{"Lab", "", "lab_standing.xml", 0, 5.0}),
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace

@@ -28,7 +28,7 @@ class ReplayProgramTest : public testing::Test {
   std::filesystem::path WriteLog() {
     const ProgramResult result = RunProgram({Program("play"),
                                              "--config",
-                                             ShippedConfig("lab.xml"),
+                                             ShippedConfig("lab_standing.xml"),
                                              "--input",
                                              ShippedConfig("lab_scene.xml"),
                                              "--scene-seconds",
@@ -41,7 +41,7 @@ class ReplayProgramTest : public testing::Test {
   }
 
   ProgramResult Replay(const std::filesystem::path& log, const std::vector<std::string>& more) {
-    return RunProgram(With({Program("replay"), log, "--config", ShippedConfig("lab.xml")}, more),
+    return RunProgram(With({Program("replay"), log, "--config", ShippedConfig("lab_standing.xml")}, more),
                       folder_.path(),
                       120);
   }
@@ -83,7 +83,7 @@ TEST_F(ReplayProgramTest, AgreesWithTheLiveGraphOnEveryDetection) {
   const ProgramResult live = RunProgram({Program("run"),
                                          "--headless",
                                          "--config",
-                                         ShippedConfig("lab.xml"),
+                                         ShippedConfig("lab_standing.xml"),
                                          "--lcm-url",
                                          TestUrl(17510),
                                          "--set",

@@ -29,7 +29,7 @@ class RunnerTest : public testing::Test {
     return {Program("run"),
             "--headless",
             "--config",
-            ShippedConfig("lab.xml"),
+            ShippedConfig("lab_standing.xml"),
             "--lcm-url",
             TestUrl(kPort),
             "--output",
@@ -177,7 +177,7 @@ TEST_F(RunnerTest, ItsLogHoldsWhatItsDeputySaidAndWasTold) {
 TEST_F(RunnerTest, AnyPathMayHaveBlanksQuotesDollarsAndBackslashes) {
   const auto folder = folder_.path() / "it's a $HOME \\ \"folder\"";
   std::filesystem::create_directories(folder);
-  std::filesystem::copy(ShippedConfig("lab.xml"), folder / "the lab.xml");
+  std::filesystem::copy(ShippedConfig("lab_standing.xml"), folder / "the lab.xml");
   std::filesystem::copy(ShippedConfig("lab_scene.xml"), folder / "$PWD scene.xml");
   const std::vector<std::string> command = {Program("run"),
                                             "--headless",

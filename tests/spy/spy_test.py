@@ -153,7 +153,7 @@ class SpyTest(unittest.TestCase):
 
     def start_graph(self):
         self.started(Program(PROGRAMS / "clearway-run", "--headless", "--config",
-                             ROOT / "config/lab.xml", "--output", self.folder / "run"))
+                             ROOT / "config/lab_standing.xml", "--output", self.folder / "run"))
 
     def take_picture(self, display):
         if shutil.which("import") is None:

@@ -22,7 +22,7 @@ namespace clearway::test {
 /// A graph of real programs that plays a free room for ever, and an observer.
 class RunningGraphTest : public testing::Test {
  protected:
-  static constexpr double kTop_mps = 1.0;       // Of the vehicle in config/lab.xml.
+  static constexpr double kTop_mps = 1.0;       // Of the vehicle in config/lab_standing.xml.
   static constexpr double kDegraded_mps = 0.3;  // StopGuardConfig's default.
   static constexpr std::int64_t kSecond = 1'000'000;
   // The stated limit, and what a loaded machine may add on the way from the guard's clock to ours.
@@ -33,7 +33,7 @@ class RunningGraphTest : public testing::Test {
       : url_(TestUrl(NextPort())),
         listener_(url_),
         graph_(url_,
-               {"--config", SourceFolder() / "config" / "lab.xml", "--lcm-url", url_},
+               {"--config", SourceFolder() / "config" / "lab_standing.xml", "--lcm-url", url_},
                {"--input",
                 SourceFolder() / "tests" / "support" / "free_room_scene.xml",
                 "--scene-seconds",

@@ -25,7 +25,7 @@ const graph::GraphConfig& WithoutLog(const graph::GraphConfig& config) {
 }  // namespace
 
 graph::GraphConfig LabConfig() {
-  return config::Load<graph::GraphConfig>(SourceFolder() / "config" / "lab.xml").root;
+  return config::Load<graph::GraphConfig>(SourceFolder() / "config" / "lab_standing.xml").root;
 }
 
 std::unique_ptr<play::ScanSource> FreeRoom(double seconds) {

@@ -38,21 +38,35 @@ std::string StatusChannelOf(std::string process) {
   return process + "_STATUS";
 }
 
-ExecLine FeederOf(const RunSettings& settings) {
-  if (settings.kind == InputKind::kLog) {
-    return {.environment = {},
-            .arguments = {"lcm-logplayer",
-                          "-l",
-                          settings.buses.local.url + "?ttl=0",
-                          "-e",
-                          InputsOf(settings),
-                          settings.input}};
-  }
-  ExecLine line{.environment = {},
-                .arguments = {"clearway-play", "--headless", "--input", settings.input}};
+ExecLine ProgramLine(const std::string& process,
+                     std::vector<std::string> own_arguments,
+                     const RunSettings& settings) {
+  ExecLine line{.environment = {}, .arguments = {ProgramOf(process)}};
+  line.arguments.insert(line.arguments.end(), own_arguments.begin(), own_arguments.end());
   line.arguments.insert(
       line.arguments.end(), settings.child_arguments.begin(), settings.child_arguments.end());
   return line;
+}
+
+ExecLine FeederOf(const RunSettings& settings) {
+  switch (settings.kind) {
+    case InputKind::kLog:
+      return {.environment = {},
+              .arguments = {"lcm-logplayer",
+                            "-l",
+                            settings.buses.local.url + "?ttl=0",
+                            "-e",
+                            InputsOf(settings),
+                            settings.input}};
+    case InputKind::kLvx:
+      return ProgramLine("livox_driver", {"--replay", settings.input}, settings);
+    case InputKind::kSimulated:
+      return ProgramLine("simulator", {}, settings);
+    case InputKind::kPlayed:
+    case InputKind::kLive:
+      break;
+  }
+  return ProgramLine("play", {"--headless", "--input", settings.input}, settings);
 }
 
 DeployedCommand CommandOf(const std::string& id, const char* group, const ExecLine& line) {
@@ -66,8 +80,14 @@ DeployedCommand CommandOf(const std::string& id, const char* group, const ExecLi
 
 }  // namespace
 
+std::string FeederName(const RunSettings& settings) {
+  if (settings.kind == InputKind::kSimulated) return "simulator";
+  return settings.kind == InputKind::kLvx ? "livox_driver" : "play";
+}
+
 std::vector<std::string> ProcessNames(const RunSettings& settings) {
   std::vector<std::string> names{"preprocessor", "clusterer", "stop_guard"};
+  if (settings.kind == InputKind::kSimulated) names.emplace_back("livox_driver");
   if (settings.with_map_server) names.emplace_back("map_server");
   if (settings.with_pose_source) names.emplace_back("pose_source");
   return names;
@@ -77,14 +97,12 @@ core::procman::Deployment MakeDeployment(const RunSettings& settings, const std:
   core::procman::Deployment deployment;
   for (const std::string& process : ProcessNames(settings)) {
     // By its status the deputy tells whether it is ready.
-    ExecLine line{.environment = {{"CLEARWAY_STATUS_CHANNEL", StatusChannelOf(process)}},
-                  .arguments = {ProgramOf(process)}};
-    line.arguments.insert(
-        line.arguments.end(), settings.child_arguments.begin(), settings.child_arguments.end());
+    ExecLine line = ProgramLine(process, {}, settings);
+    line.environment = {{"CLEARWAY_STATUS_CHANNEL", StatusChannelOf(process)}};
     deployment.commands.push_back(CommandOf(process, kGraphGroup, line));
   }
   if (settings.kind != InputKind::kLive) {
-    deployment.commands.push_back(CommandOf(kFeeder, kInputGroup, FeederOf(settings)));
+    deployment.commands.push_back(CommandOf(FeederName(settings), kInputGroup, FeederOf(settings)));
   }
   for (DeployedCommand& command : deployment.commands) command.deputy = deputy;
   return deployment;

@@ -13,8 +13,9 @@ namespace clearway::run_graph {
 inline constexpr char kGraphGroup[] = "graph";
 inline constexpr char kInputGroup[] = "input";
 
-/// The one command of kInputGroup; there is none for a live input.
-inline constexpr char kFeeder[] = "play";
+/// The one command of kInputGroup: "play", "livox_driver", "simulator"; there is none for a live
+/// input.
+[[nodiscard]] std::string FeederName(const RunSettings& settings);
 
 /// Names of the graph's processes in this run, as in <NAME>_STATUS.
 [[nodiscard]] std::vector<std::string> ProcessNames(const RunSettings& settings);

@@ -25,7 +25,11 @@ constexpr std::int64_t kLastWordsUs = 100'000;  // For the last status of each p
 }  // namespace
 
 GraphRun::GraphRun(process::LiveRuntime& runtime, process::Node& node, const RunSettings& settings)
-    : runtime_(runtime), node_(node), settings_(settings), deputy_(runtime, settings) {
+    : runtime_(runtime),
+      node_(node),
+      settings_(settings),
+      deputy_(runtime, settings),
+      feeder_(FeederName(settings)) {
   if (!settings_.log.empty()) log_ = std::make_unique<io::LcmLogWriter>(settings_.log);
 }
 
@@ -77,7 +81,9 @@ void GraphRun::Listen() {
                               channels::kStopGuardStatus,
                               channels::kMapServerStatus,
                               channels::kPoseSourceStatus,
-                              channels::kPlayStatus}) {
+                              channels::kPlayStatus,
+                              channels::kLivoxDriverStatus,
+                              channels::kSimulatorStatus}) {
     node_.Subscribe<status_t>(channel, [this](const auto& m) { statistics_.OnStatus(m); });
     LogChannel(channel);
   }
@@ -87,6 +93,9 @@ void GraphRun::Listen() {
   LogChannel(channels::kDetections);
   LogChannel(channels::kDrivePermit);
   LogChannel(channels::kOdometry);
+  LogChannel(channels::kDriveRequest);
+  LogChannel(channels::kDriveCommand);
+  LogChannel(channels::kTruth);
   LogChannel(channels::kPose);
   LogChannel(channels::kPoseStatus);
   LogChannel(channels::kMapRequest);
@@ -102,7 +111,7 @@ void GraphRun::Listen() {
 void GraphRun::StartFeeding() {
   phase_ = Phase::kFeeding;
   phase_start_us_ = feeding_start_us_ = runtime_.MonotonicUs();
-  cpu_at_start_s_ = GraphCpuSeconds();
+  cpu_at_start_s_ = CpuSeconds();
   deputy_.Start(kInputGroup);
 }
 
@@ -143,10 +152,10 @@ void GraphRun::CheckForDeaths() {
 
 bool GraphRun::IsInputOver() {
   if (settings_.kind != InputKind::kLive) {
-    const std::optional<int> status = deputy_.ExitStatusOf(kFeeder);
+    const std::optional<int> status = deputy_.ExitStatusOf(feeder_);
     if (status.value_or(0) != 0) {
       input_problem_ = "the input ended with status " + std::to_string(*status) + ":\n" +
-                       deputy_.LastWordsOf(kFeeder);
+                       deputy_.LastWordsOf(feeder_);
       if (statistics_.num_played() == 0) throw std::runtime_error(input_problem_);
     }
     return status.has_value();
@@ -156,7 +165,7 @@ bool GraphRun::IsInputOver() {
 }
 
 bool GraphRun::IsFeederDown() const {
-  return deputy_.PidOf(kFeeder) == 0;
+  return deputy_.PidOf(feeder_) == 0;
 }
 
 bool GraphRun::HasDrained() const {
@@ -199,20 +208,31 @@ void GraphRun::Supervise() {
   }
 }
 
-double GraphRun::GraphCpuSeconds() const {
-  double sum_s = 0.0;
-  for (const std::string& process : ProcessNames(settings_)) {
-    sum_s += host::UseOf(deputy_.PidOf(process)).value_or(host::ResourceUse{}).cpu_s;
+std::vector<std::string> GraphRun::MeasuredProcesses() const {
+  std::vector<std::string> names = ProcessNames(settings_);
+  if (settings_.kind == InputKind::kSimulated) names.push_back(feeder_);
+  return names;
+}
+
+std::map<std::string, double> GraphRun::CpuSeconds() const {
+  std::map<std::string, double> seconds;
+  for (const std::string& process : MeasuredProcesses()) {
+    seconds[process] = host::UseOf(deputy_.PidOf(process)).value_or(host::ResourceUse{}).cpu_s;
   }
-  return sum_s;
+  return seconds;
 }
 
 void GraphRun::MeasureMachine() {
   MachineUse use;
   const double elapsed_s = static_cast<double>(runtime_.MonotonicUs() - feeding_start_us_) * 1e-6;
-  use.cpu_cores = (GraphCpuSeconds() - cpu_at_start_s_) / elapsed_s;
-  for (const std::string& process : ProcessNames(settings_)) {
-    use.pss_mb += host::UseOf(deputy_.PidOf(process)).value_or(host::ResourceUse{}).pss_mb;
+  for (const std::string& process : MeasuredProcesses()) {
+    const auto now = host::UseOf(deputy_.PidOf(process)).value_or(host::ResourceUse{});
+    const ProcessUse one{.cpu_cores = (now.cpu_s - cpu_at_start_s_[process]) / elapsed_s,
+                         .pss_mb = now.pss_mb};
+    use.processes[process] = one;
+    if (process == feeder_) continue;
+    use.cpu_cores += one.cpu_cores;
+    use.pss_mb += one.pss_mb;
   }
   machine_use_ = use;
 }

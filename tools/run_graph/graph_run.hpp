@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/io/lcm_log.hpp"
 #include "common/process/live_runtime.hpp"
@@ -16,11 +18,18 @@
 
 namespace clearway::run_graph {
 
-/// What the machine spent on the processes of the graph (without the player, the deputy and this
-/// program).
+/// What the machine spent on one process.
+struct ProcessUse {
+  double cpu_cores = 0.0;
+  double pss_mb = 0.0;
+};
+
+/// What the machine spent on the processes of the graph (without the player or simulator, the
+/// deputy and this program).
 struct MachineUse {
   double cpu_cores = 0.0;
   double pss_mb = 0.0;
+  std::map<std::string, ProcessUse> processes;  ///< Each by itself, the simulator too.
 };
 
 /// Has a deputy of its own start the processes of the graph, waits until they are ready, feeds
@@ -58,7 +67,8 @@ class GraphRun {
   void StopProcesses();
   void RunUntil(const std::function<bool()>& holds);
   void MeasureMachine();
-  [[nodiscard]] double GraphCpuSeconds() const;
+  [[nodiscard]] std::vector<std::string> MeasuredProcesses() const;
+  [[nodiscard]] std::map<std::string, double> CpuSeconds() const;
   void ShowProgress();
 
   process::LiveRuntime& runtime_;
@@ -70,7 +80,8 @@ class GraphRun {
   Phase phase_ = Phase::kStarting;
   std::int64_t phase_start_us_ = 0;
   std::int64_t feeding_start_us_ = 0;
-  double cpu_at_start_s_ = 0.0;
+  std::string feeder_;
+  std::map<std::string, double> cpu_at_start_s_;
   std::optional<MachineUse> machine_use_;
   std::string input_problem_;
 };

@@ -20,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kPicture[] = "last_scan.png";
+constexpr double kSimulated_s = 30.0;  // A simulation has no end of its own.
 
 struct Arguments {
   graph::Options common;
@@ -35,10 +36,11 @@ struct Arguments {
 void AddArguments(CLI::App& app, Arguments& arguments) {
   graph::AddOptions(app, arguments.common);
   app.get_option("--config")->required(false);
-  app.add_option("--input",
-                 arguments.input,
-                 "Folder, list (.txt), .pcd, .bin, scene (.xml), LCM log, or \"live\"; without it "
-                 "the generated lab is played")
+  app.add_option(
+         "--input",
+         arguments.input,
+         "Folder, list (.txt), .pcd, .bin, .lvx, LCM log, scene (.xml: simulated, or played "
+         "where the vehicle is stationary), or \"live\"; without it the simulated lab")
       ->type_name("PATH");
   app.add_option("--output", arguments.output, "Folder for the picture and the processes' logs")
       ->take_last()
@@ -74,12 +76,15 @@ bool IsLcmLog(const fs::path& path) {
   });
 }
 
-InputKind KindOf(const std::string& input) {
+InputKind KindOf(const std::string& input, const graph::GraphConfig& config) {
   if (input == "live") return InputKind::kLive;
+  const fs::path extension = fs::path(input).extension();
+  if (extension == ".lvx") return InputKind::kLvx;
+  if (extension == ".xml" && !config.vehicle.stationary) return InputKind::kSimulated;
   return IsLcmLog(input) ? InputKind::kLog : InputKind::kPlayed;
 }
 
-// Without an input the lab is played, and only then there is a configuration to start from.
+// Without an input the lab is driven through, and only then there is a configuration to start from.
 void FillIn(Arguments& arguments) {
   if (arguments.common.config_path.empty()) {
     if (!arguments.input.empty()) {
@@ -91,6 +96,10 @@ void FillIn(Arguments& arguments) {
   if (arguments.input.empty()) arguments.input = ConfigFolder() / "lab_scene.xml";
   if (arguments.input != "live" && !fs::exists(arguments.input)) {
     throw std::runtime_error("--input " + arguments.input + ": no such file or folder");
+  }
+  if (fs::path(arguments.input).extension() == ".xml") {
+    arguments.common.overrides.push_back("simulator.scene=" +
+                                         fs::absolute(arguments.input).string());
   }
   if (!arguments.map.empty()) {
     graph::ServeMap(arguments.map, arguments.common);
@@ -111,7 +120,7 @@ std::vector<std::string> ChildArguments(const graph::Options& options) {
 
 RunSettings SettingsOf(const Arguments& arguments, const graph::GraphConfig& config) {
   RunSettings settings;
-  settings.kind = KindOf(arguments.input);
+  settings.kind = KindOf(arguments.input, config);
   settings.input = arguments.input;
   settings.program_folder = ProgramFolder();
   settings.output_folder = arguments.output;
@@ -122,6 +131,9 @@ RunSettings SettingsOf(const Arguments& arguments, const graph::GraphConfig& con
   settings.wait_for_map = settings.with_map_server && config.preprocessor.map_filter.enabled;
   settings.with_pose_source = config.pose_source.mode != core::PoseSourceMode::kOff;
   settings.stop_after_s = arguments.stop_after_s;
+  if (settings.kind == InputKind::kSimulated && !settings.stop_after_s) {
+    settings.stop_after_s = kSimulated_s;
+  }
   settings.log = arguments.log;
   settings.show_progress = !arguments.headless && isatty(STDERR_FILENO) != 0;
   return settings;
@@ -139,8 +151,14 @@ void RemoveResults(const fs::path& folder) {
   fs::remove(folder / kPicture);
   std::vector<fs::path> logs;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    for (const char* process :
-         {"preprocessor", "clusterer", "stop_guard", "map_server", "pose_source", "play"}) {
+    for (const char* process : {"preprocessor",
+                                "clusterer",
+                                "stop_guard",
+                                "map_server",
+                                "pose_source",
+                                "livox_driver",
+                                "simulator",
+                                "play"}) {
       if (IsLogOf(process, entry.path().filename())) logs.push_back(entry.path());
     }
   }

@@ -59,9 +59,19 @@ std::string FormatTable(const RunSummary& summary, const std::optional<MachineUs
                  summary.map_scans);
     if (!summary.map_trouble.empty()) text += "  (" + summary.map_trouble + ")\n";
   }
+  if (summary.drive) {
+    const DriveSummary& drive = *summary.drive;
+    text += Line("\n%-24s %8.2f\n", "driven m", drive.driven_m);
+    text += Line("%-24s %8zu\n", "stops for an obstacle", drive.obstacle_stops);
+    if (drive.nearest_m) text += Line("%-24s %8.2f\n", "nearest to anything m", *drive.nearest_m);
+    text += Line("%-24s %8lld\n", "contacts", static_cast<long long>(drive.contacts));
+  }
   if (use) {
     text += Line("\n%-24s %8.2f\n", "CPU cores", use->cpu_cores);
     text += Line("%-24s %8.1f\n", "memory (PSS) MB", use->pss_mb);
+    for (const auto& [name, one] : use->processes) {
+      text += Line("  %-22s %8.2f %8.1f MB\n", name.c_str(), one.cpu_cores, one.pss_mb);
+    }
   }
   return text;
 }
@@ -95,9 +105,18 @@ std::string FormatJson(const RunSummary& summary, const std::optional<MachineUse
   if (summary.slice_to_permit_ms) {
     json["latency_ms"]["slice_to_permit"] = ToJson(*summary.slice_to_permit_ms);
   }
+  if (summary.drive) {
+    json["drive"]["driven_m"] = summary.drive->driven_m;
+    json["drive"]["obstacle_stops"] = summary.drive->obstacle_stops;
+    if (summary.drive->nearest_m) json["drive"]["nearest_m"] = *summary.drive->nearest_m;
+    json["drive"]["contacts"] = summary.drive->contacts;
+  }
   if (use) {
     json["cpu_cores"] = use->cpu_cores;
     json["pss_mb"] = use->pss_mb;
+    for (const auto& [name, one] : use->processes) {
+      json["processes"][name] = {{"cpu_cores", one.cpu_cores}, {"pss_mb", one.pss_mb}};
+    }
   }
   return json.dump(2) + '\n';
 }

@@ -12,9 +12,11 @@ namespace clearway::run_graph {
 
 /// Where a run's scans come from.
 enum class InputKind {
-  kPlayed,  ///< A folder, list, file or scene, by clearway-play.
-  kLog,     ///< An LCM log, by lcm-logplayer; inputs only.
-  kLive,    ///< Whatever publishes LIDAR_POINTS.
+  kPlayed,     ///< A folder, list, file or scene, by clearway-play.
+  kLog,        ///< An LCM log, by lcm-logplayer; inputs only.
+  kLvx,        ///< An LVX file, by the sensor's driver.
+  kLive,       ///< Whatever publishes LIDAR_POINTS.
+  kSimulated,  ///< The simulator's sensors, by the driver; the simulated robot drives.
 };
 
 /// What is run.

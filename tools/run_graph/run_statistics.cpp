@@ -18,6 +18,10 @@ double Milliseconds(std::int64_t us) {
   return static_cast<double>(us) / 1000.0;
 }
 
+bool IsStoppedByObstacle(const drive_permit_t& permit) {
+  return permit.reason == drive_permit_t::REASON_OBSTACLE && permit.forward_mps <= 0.0;
+}
+
 std::optional<double> Mean(double sum, std::size_t count) {
   if (count == 0) return std::nullopt;
   return sum / static_cast<double>(count);
@@ -130,6 +134,8 @@ void RunStatistics::OnDrivePermit(const drive_permit_t& message, std::int64_t ar
   const bool is_new = !last_permit_ || last_permit_->slice_sensor != message.slice_sensor ||
                       last_permit_->slice_scan_id != message.slice_scan_id ||
                       last_permit_->slice_index != message.slice_index;
+  const bool was_stopped = last_permit_ && IsStoppedByObstacle(*last_permit_);
+  if (!was_stopped && IsStoppedByObstacle(message)) ++obstacle_stops_;
   last_permit_ = message;
   if (!is_new || message.slice_scan_id < 0) return;
   processing_ms_["stop_guard"].push_back(Milliseconds(message.processing_us));
@@ -165,6 +171,20 @@ const status_t* RunStatistics::StatusOf(const std::string& process) const {
   return found == statuses_.end() ? nullptr : &found->second;
 }
 
+std::optional<DriveSummary> RunStatistics::SummariseDrive() const {
+  const status_t* const status = StatusOf("simulator");
+  if (status == nullptr) return std::nullopt;
+  DriveSummary drive;
+  drive.obstacle_stops = obstacle_stops_;
+  for (const counter_t& counter : status->counters) {
+    const double metres = static_cast<double>(counter.value) / 1000.0;
+    if (counter.name == "driven_mm") drive.driven_m = metres;
+    if (counter.name == "nearest_mm" && counter.value >= 0) drive.nearest_m = metres;
+    if (counter.name == "contacts") drive.contacts = counter.value;
+  }
+  return drive;
+}
+
 RunSummary RunStatistics::Summarise() const {
   RunSummary summary;
   summary.scans_played = played_.size();
@@ -190,6 +210,7 @@ RunSummary RunStatistics::Summarise() const {
   summary.detections = Mean(sum_detections_, detected_.size());
   summary.scan_to_detections_ms = QuantilesOf(scan_to_detections_ms_);
   summary.slice_to_permit_ms = QuantilesOf(slice_to_permit_ms_);
+  summary.drive = SummariseDrive();
   return summary;
 }
 

@@ -44,6 +44,14 @@ struct StageSummary {
   std::optional<Quantiles> processing_ms;
 };
 
+/// What a simulated robot did, as the simulator tells and as it was permitted.
+struct DriveSummary {
+  double driven_m = 0.0;
+  std::optional<double> nearest_m;  ///< Least distance of its footprint from anything.
+  std::int64_t contacts = 0;
+  std::size_t obstacle_stops = 0;  ///< Times that an obstacle took the permit to drive on.
+};
+
 /// What a run came to. What was not measured is absent.
 struct RunSummary {
   std::size_t scans_played = 0;      ///< Scans of which every slice of every sensor was seen.
@@ -61,6 +69,7 @@ struct RunSummary {
   std::optional<double> detections;
   std::optional<Quantiles> scan_to_detections_ms;
   std::optional<Quantiles> slice_to_permit_ms;
+  std::optional<DriveSummary> drive;
 };
 
 /// Listens to all messages of a graph and sums up. Arrival times are on one monotonic clock.
@@ -123,6 +132,8 @@ class RunStatistics {
   ScanRecord& Record(ScanKey key);
   ScanRecord* RecordThatEnds(std::int64_t end_utime);
 
+  [[nodiscard]] std::optional<DriveSummary> SummariseDrive() const;
+
   std::map<ScanKey, Arrivals> arrivals_;
   std::map<ScanKey, ScanRecord> recent_;
   std::map<ScanKey, DetectionSlices> detection_slices_;
@@ -137,6 +148,7 @@ class RunStatistics {
   std::vector<double> scan_to_detections_ms_;
   std::vector<double> slice_to_permit_ms_;
   std::size_t obstacle_scans_ = 0;
+  std::size_t obstacle_stops_ = 0;
   std::size_t map_scans_ = 0;
   std::size_t mapped_scans_ = 0;
   std::string map_trouble_;

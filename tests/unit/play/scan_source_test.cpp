@@ -11,7 +11,7 @@ namespace clearway::play {
 namespace {
 
 graph::GraphConfig LabConfig() {
-  return config::Load<graph::GraphConfig>(test::SourceFolder() / "config" / "lab.xml").root;
+  return config::Load<graph::GraphConfig>(test::SourceFolder() / "config" / "lab_standing.xml").root;
 }
 
 TEST(SceneSourceTest, HasAScanForEachPeriodOfTheTimeAsked) {

@@ -103,5 +103,36 @@ TEST(GraphDeploymentTest, ALiveInputNeedsNoFeeder) {
   EXPECT_EQ(MakeDeployment(settings, "d").commands.size(), 3U);
 }
 
+TEST(GraphDeploymentTest, ASimulatedRunHasTheDriverInItsGraphAndTheSimulatorAsItsFeeder) {
+  RunSettings settings = LabRun();
+  settings.kind = InputKind::kSimulated;
+
+  const auto deployment = MakeDeployment(settings, "d");
+
+  EXPECT_THAT(
+      LineOf(deployment, "livox_driver").arguments,
+      ElementsAre("clearway-livox-driver", "--config", "/etc/lab one.xml", "--set", "a.b=c"));
+  EXPECT_THAT(LineOf(deployment, "simulator").arguments,
+              ElementsAre("clearway-simulator", "--config", "/etc/lab one.xml", "--set", "a.b=c"));
+  EXPECT_THAT(LineOf(deployment, "play").arguments, testing::IsEmpty());
+}
+
+TEST(GraphDeploymentTest, AnLvxFileIsPlayedByTheDriver) {
+  RunSettings settings = LabRun();
+  settings.kind = InputKind::kLvx;
+  settings.input = "/data/a b.lvx";
+
+  const ExecLine line = LineOf(MakeDeployment(settings, "d"), FeederName(settings));
+
+  EXPECT_THAT(line.arguments,
+              ElementsAre("clearway-livox-driver",
+                          "--replay",
+                          "/data/a b.lvx",
+                          "--config",
+                          "/etc/lab one.xml",
+                          "--set",
+                          "a.b=c"));
+}
+
 }  // namespace
 }  // namespace clearway::run_graph

@@ -41,8 +41,12 @@ std::set<std::string> NamesOf(const nlohmann::json& object) {
 
 using Names = std::set<std::string>;
 
+const MachineUse kUse{.cpu_cores = 0.5,
+                      .pss_mb = 80.0,
+                      .processes = {{"stop_guard", {.cpu_cores = 0.1, .pss_mb = 9.0}}}};
+
 TEST(ReportTest, TheJsonHasItsStableNamesAndValues) {
-  const auto json = nlohmann::json::parse(FormatJson(FullSummary(), MachineUse{0.5, 80.0}));
+  const auto json = nlohmann::json::parse(FormatJson(FullSummary(), kUse));
 
   EXPECT_EQ(NamesOf(json),
             (Names{"scans_played",
@@ -54,7 +58,8 @@ TEST(ReportTest, TheJsonHasItsStableNamesAndValues) {
                    "detections",
                    "latency_ms",
                    "cpu_cores",
-                   "pss_mb"}));
+                   "pss_mb",
+                   "processes"}));
   EXPECT_EQ(NamesOf(json["stages"]), (Names{"preprocessor", "clusterer", "stop_guard"}));
   EXPECT_EQ(NamesOf(json["stages"]["clusterer"]), (Names{"scans", "median_ms", "p99_ms"}));
   EXPECT_EQ(NamesOf(json["points"]), (Names{"in", "voxel", "floor", "map"}));
@@ -95,14 +100,15 @@ TEST(ReportTest, WhatWasNotMeasuredIsAbsentFromTheJson) {
 }
 
 TEST(ReportTest, TheTableShowsWhatWasMeasured) {
-  const std::string table = FormatTable(FullSummary(), MachineUse{0.5, 80.0});
+  const std::string table = FormatTable(FullSummary(), kUse);
 
   for (const char* const text : {"scans played                   10\n",
                                  "messages lost                   3\n",
                                  "preprocessor                 1.50     2.50       10\n",
                                  "after the map                50.0\n",
                                  "slice to permit              1.00     2.00\n",
-                                 "CPU cores                    0.50\n"}) {
+                                 "CPU cores                    0.50\n",
+                                 "  stop_guard                 0.10      9.0 MB\n"}) {
     EXPECT_THAT(table, HasSubstr(text));
   }
 }

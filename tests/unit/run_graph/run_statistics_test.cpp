@@ -329,5 +329,62 @@ TEST(RunStatisticsTest, ThePictureIsOfTheNewestScanWithDetections) {
   EXPECT_EQ(statistics.last_input_us(), 29);
 }
 
+status_t SimulatorStatus(const std::vector<std::pair<std::string, std::int64_t>>& counters) {
+  status_t status{};
+  status.process = "simulator";
+  for (const auto& [name, value] : counters) {
+    counter_t& counter = status.counters.emplace_back();
+    counter.name = name;
+    counter.value = value;
+  }
+  status.n = static_cast<std::int32_t>(status.counters.size());
+  return status;
+}
+
+TEST(RunStatisticsTest, WithoutASimulatorThereIsNoDrive) {
+  RunStatistics statistics;
+
+  statistics.OnDrivePermit(Permit(0, 0), 0);
+
+  EXPECT_FALSE(statistics.Summarise().drive);
+}
+
+TEST(RunStatisticsTest, TheDriveIsWhatTheSimulatorCounts) {
+  RunStatistics statistics;
+
+  statistics.OnStatus(SimulatorStatus({{"driven_mm", 5250}, {"nearest_mm", 120}, {"contacts", 2}}));
+
+  const auto drive = statistics.Summarise().drive;
+  ASSERT_TRUE(drive);
+  EXPECT_DOUBLE_EQ(drive->driven_m, 5.25);
+  EXPECT_DOUBLE_EQ(drive->nearest_m.value(), 0.12);
+  EXPECT_EQ(drive->contacts, 2);
+}
+
+TEST(RunStatisticsTest, ANearestDistanceThatIsNotKnownIsAbsent) {
+  RunStatistics statistics;
+
+  statistics.OnStatus(SimulatorStatus({{"nearest_mm", -1}}));
+
+  EXPECT_FALSE(statistics.Summarise().drive.value().nearest_m);
+}
+
+TEST(RunStatisticsTest, AStopForAnObstacleCountsOnceHoweverLongItLasts) {
+  RunStatistics statistics;
+  statistics.OnStatus(SimulatorStatus({}));
+  drive_permit_t free = Permit(0, 0);
+  free.forward_mps = 1.0;
+  drive_permit_t stopped = Permit(0, 0);
+  stopped.reason = drive_permit_t::REASON_OBSTACLE;
+  drive_permit_t slowed = stopped;
+  slowed.forward_mps = 0.3;
+
+  for (const auto& permit : {free, slowed, stopped, stopped, free, stopped}) {
+    statistics.OnDrivePermit(permit, 0);
+  }
+
+  EXPECT_EQ(statistics.Summarise().drive.value().obstacle_stops, 2U);
+}
+
 }  // namespace
 }  // namespace clearway::run_graph
