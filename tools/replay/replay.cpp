@@ -45,34 +45,10 @@ class Listener {
   DetectionsOfRun detections{"this replay"};
 
  private:
-  template <typename Message, typename Take>
-  static bool TakeIfOn(const messages::Channel<Message>& channel,
-                       const std::string& name,
-                       std::span<const std::byte> bytes,
-                       const Take& take) {
-    if (name != channel.name) return false;
-    if (const auto message = messages::Decode<Message>(bytes)) take(*message);
-    return true;
-  }
-
   void Count(const std::string& channel, std::span<const std::byte> bytes) {
-    const std::int64_t now_us = runtime_.MonotonicUs();
-    if (channel.ends_with("_STATUS")) {
-      if (const auto status = messages::Decode<status_t>(bytes)) statistics.OnStatus(*status);
-      return;
-    }
-    TakeIfOn(channels::kLidarPoints,
-             channel,
-             bytes,
-             [&](const auto& message) { statistics.OnLidarPoints(message, now_us); }) ||
-        TakeIfOn(channels::kObstaclePoints,
-                 channel,
-                 bytes,
-                 [&](const auto& message) { statistics.OnObstaclePoints(message); }) ||
-        TakeIfOn(channels::kDetections, channel, bytes, [&](const auto& message) {
-          statistics.OnDetections(message, now_us);
-          detections.Add(message);
-        });
+    statistics.OnMessage(channel, bytes, runtime_.MonotonicUs());
+    if (channel != channels::kDetections.name) return;
+    if (const auto message = messages::Decode<detections_t>(bytes)) detections.Add(*message);
   }
 
   const ReplaySettings& settings_;

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -84,6 +85,12 @@ class RunStatistics {
   void OnDetections(const detections_t& message, std::int64_t arrival_us);
   void OnDrivePermit(const drive_permit_t& message, std::int64_t arrival_us);
   void OnStatus(const status_t& message);
+
+  /// The same by the channel's name, without prefix; other channels, and what cannot be decoded, are
+  /// left out.
+  void OnMessage(const std::string& channel,
+                 std::span<const std::byte> bytes,
+                 std::int64_t arrival_us);
 
   [[nodiscard]] RunSummary Summarise() const;
 
