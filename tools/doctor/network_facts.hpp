@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "common/host/port_holders.hpp"
+
 /// What this host's network is like, as the kernel says.
 namespace clearway::doctor {
 
@@ -35,12 +37,7 @@ struct Route {
 /// connected socket does not tell: over lo it may be another interface's.)
 [[nodiscard]] Route RouteTo(const std::string& address);
 
-/// Who holds a UDP port.
-struct PortHolder {
-  int pid = 0;
-  std::string program;
-  friend bool operator==(const PortHolder&, const PortHolder&) = default;
-};
+using host::PortHolder;
 
 struct PortFacts {
   int port = 0;
