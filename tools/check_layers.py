@@ -18,7 +18,7 @@ ALLOWED = {
     "common/io": ["common/core"],
     "common/host": ["common/core"],
     "common/process": ["common/core", "common/messages"],
-    "common/net": ["common/core", "common/process"],
+    "common/net": ["common/core", "common/host", "common/process"],
     "common/graph": ["common"],
     "processes": ["common"],
     "tools": ["common", "processes", "tools"],

@@ -51,6 +51,8 @@ class Socket {
   [[nodiscard]] virtual SocketCounts counts() const = 0;
   /// What the kernel granted; -1 where there is no kernel.
   [[nodiscard]] virtual int receive_buffer_bytes() const = 0;
+  /// Why the last Send() was refused, in the system's words; empty when it was not.
+  [[nodiscard]] virtual std::string send_error() const { return {}; }
 };
 
 /// An IPv4 address of this host, with its subnet.
