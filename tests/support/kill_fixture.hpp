@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/core/guard/permit_watch.hpp"
+#include "common/core/guard/base_gate.hpp"
 #include "tests/support/graph_listener.hpp"
 #include "tests/support/live_buses.hpp"
 #include "tests/support/running_graph.hpp"
@@ -121,13 +121,21 @@ class KillTest : public RunningGraphTest {
 
   // What the base may do at `time_us`, by all permits that had come by then.
   [[nodiscard]] bool MayTheBaseMove(std::int64_t time_us) const {
-    core::PermitWatch watch;
+    core::BaseGate gate;
     for (const auto& permit : listener_.permits) {
       if (permit.arrival_us > time_us) break;
-      watch.OnPermit(
-          permit.message.session, permit.message.sequence, permit.message.utime, permit.arrival_us);
+      const drive_permit_t& message = permit.message;
+      gate.OnPermit({message.session,
+                     message.sequence,
+                     message.utime,
+                     message.valid_us,
+                     message.forward_mps,
+                     message.backward_mps,
+                     message.turn_left_radps,
+                     message.turn_right_radps},
+                    permit.arrival_us);
     }
-    return watch.IsValid(time_us);
+    return gate.PermitState(time_us) == core::GateState::kValid;
   }
 
   // Of the permits that came in [from, to]: no one lets the vehicle go faster than `limit_mps`.
