@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 
 #include "common/graph/options.hpp"
-#include "common/process/live_runtime.hpp"
 #include "common/process/log.hpp"
 
 namespace clearway::graph {
@@ -17,6 +16,7 @@ int ProcessMain(int argc, char** argv, const ProcessInfo& info, const MakeProces
   CLI::App app(info.description, program);
   Options options;
   AddOptions(app, options);
+  if (info.add_options) info.add_options(app);
   return GuardedMain(app, options, argc, argv, [&] {
     const config::LoadResult<GraphConfig> config = LoadConfig(options);
     if (AnsweredByConfig(options, config)) return kExitOk;
@@ -24,7 +24,7 @@ int ProcessMain(int argc, char** argv, const ProcessInfo& info, const MakeProces
     process::LiveRuntime runtime(config.root.buses, options.channel_prefix);
     process::Node node(
         runtime, {info.name, CLEARWAY_VERSION, config::Digest(config.root)}, info.status_channel);
-    const std::shared_ptr<void> process = make(config.root, node);
+    const std::shared_ptr<void> process = make(config.root, node, runtime);
     process::LogInfo("started, configuration " + config::Digest(config.root));
     runtime.Run();
     node.RefreshAndPublishStatus();

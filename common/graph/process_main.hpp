@@ -7,7 +7,12 @@
 
 #include "common/graph/graph_config.hpp"
 #include "common/messages/channels.hpp"
+#include "common/process/live_runtime.hpp"
 #include "common/process/node.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace clearway::graph {
 
@@ -16,10 +21,12 @@ struct ProcessInfo {
   std::string name;         ///< e.g. "preprocessor"; the program is clearway-<name>.
   std::string description;  ///< One sentence, for --help.
   messages::Channel<status_t> status_channel;
+  std::function<void(CLI::App&)> add_options = {};  ///< Options of its own; may be empty.
 };
 
 /// Makes the process object; it lives until the process stops.
-using MakeProcess = std::function<std::shared_ptr<void>(const GraphConfig&, process::Node&)>;
+using MakeProcess =
+    std::function<std::shared_ptr<void>(const GraphConfig&, process::Node&, process::LiveRuntime&)>;
 
 /// The whole main() of a process of the graph: options, configuration, buses, run until a signal,
 /// last status. Returns the exit status.

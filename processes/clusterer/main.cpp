@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
       {"clusterer",
        "From obstacle points to detections: Euclidean clusters, hulls, rectangles",
        messages::channels::kClustererStatus},
-      [](const graph::GraphConfig& config, process::Node& node) {
+      [](const graph::GraphConfig& config, process::Node& node, process::LiveRuntime&) {
         return std::make_shared<ClustererProcess>(
             config.clusterer.backend, config.clusterer.clustering, node);
       });

@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
       {"map_server",
        "Loads a Nav2 map and serves it on request",
        messages::channels::kMapServerStatus},
-      [](const graph::GraphConfig& config, process::Node& node) {
+      [](const graph::GraphConfig& config, process::Node& node, process::LiveRuntime&) {
         if (config.map_server.file.empty()) {
           throw std::runtime_error("no map to serve: set map_server.file to a map's YAML file");
         }

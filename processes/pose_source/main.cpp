@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
       {"pose_source",
        "Publishes POSE: a fixed pose, or dead reckoning from ODOMETRY",
        messages::channels::kPoseSourceStatus},
-      [](const graph::GraphConfig& config, process::Node& node) {
+      [](const graph::GraphConfig& config, process::Node& node, process::LiveRuntime&) {
         if (config.pose_source.mode == core::PoseSourceMode::kOff) {
           throw std::runtime_error(
               "nothing to do: set pose_source.mode to \"fixed\" or \"dead_reckoning\"");

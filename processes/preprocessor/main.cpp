@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
       {"preprocessor",
        "From raw LiDAR points to obstacle points: masks, deskew, voxel grid, floor",
        messages::channels::kPreprocessorStatus},
-      [](const graph::GraphConfig& config, process::Node& node) {
+      [](const graph::GraphConfig& config, process::Node& node, process::LiveRuntime&) {
         return std::make_shared<PreprocessorProcess>(config.preprocessor, config.vehicle, node);
       });
 }

@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
       {"stop_guard",
        "Permits motion while the way is seen to be free, from raw points and without a map",
        messages::channels::kStopGuardStatus},
-      [](const graph::GraphConfig& config, process::Node& node) {
+      [](const graph::GraphConfig& config, process::Node& node, process::LiveRuntime&) {
         return std::make_shared<StopGuardProcess>(config.stop_guard, config.vehicle, node);
       });
 }
