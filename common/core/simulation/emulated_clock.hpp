@@ -38,7 +38,9 @@ class EmulatedClock {
   [[nodiscard]] std::int64_t TrueUs(std::int64_t oscillator_ns) const;
 
   /// The UTC time that a host tells with a command, kept for PPS; `true_us` is now.
-  void SetUtc(std::int64_t utc_ns, std::int64_t true_us) { utc_minus_true_ns_ = utc_ns - true_us * 1000; }
+  void SetUtc(std::int64_t utc_ns, std::int64_t true_us) {
+    utc_minus_true_ns_ = utc_ns - true_us * 1000;
+  }
 
   /// What a packet carries as its time.
   struct Stamp {

@@ -22,10 +22,10 @@ struct EmulatedMid70Config {
   Endpoint announce_to{kBroadcastIpv4, livox::kBroadcastPort};
   std::array<std::uint8_t, 4> firmware{10, 3, 0, 1};
   std::int64_t broadcast_period_us = 1'000'000;
-  std::int64_t boot_us = 200'000;          ///< From power on to the first broadcast.
-  std::int64_t start_up_us = 1'000'000;    ///< From power on, or standby, until it measures.
+  std::int64_t boot_us = 200'000;            ///< From power on to the first broadcast.
+  std::int64_t start_up_us = 1'000'000;      ///< From power on, or standby, until it measures.
   std::int64_t host_timeout_us = 5'000'000;  ///< Without a heartbeat: the host is gone.
-  bool lets_others_take_over = true;       ///< A handshake of a second host is accepted.
+  bool lets_others_take_over = true;         ///< A handshake of a second host is accepted.
 };
 
 /// What it keeps without power.
@@ -42,14 +42,14 @@ struct EmulatedMid70Memory {
 /// What it has heard and made of it.
 struct EmulatedMid70Counts {
   std::array<std::int64_t, livox::kNumFrameDefects> broken{};  ///< Datagrams, by FrameDefect.
-  std::int64_t foreign = 0;    ///< Commands of hosts that are not connected; no answer.
-  std::int64_t unasked = 0;    ///< Frames that are no commands; no answer.
-  std::int64_t refused = 0;    ///< Commands that were answered with a failure.
-  std::int64_t done = 0;       ///< Commands that were answered with success.
-  std::int64_t handshakes = 0; ///< Of `done`.
-  std::int64_t takeovers = 0;  ///< Handshakes that took it from another host.
+  std::int64_t foreign = 0;     ///< Commands of hosts that are not connected; no answer.
+  std::int64_t unasked = 0;     ///< Frames that are no commands; no answer.
+  std::int64_t refused = 0;     ///< Commands that were answered with a failure.
+  std::int64_t done = 0;        ///< Commands that were answered with success.
+  std::int64_t handshakes = 0;  ///< Of `done`.
+  std::int64_t takeovers = 0;   ///< Handshakes that took it from another host.
   std::int64_t host_timeouts = 0;
-  std::int64_t starts = 0;     ///< Power on and reboots.
+  std::int64_t starts = 0;  ///< Power on and reboots.
 };
 
 /// The control side of a MID-70 without a network: what it says and does, in a time that is an

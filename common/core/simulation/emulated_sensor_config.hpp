@@ -1,14 +1,149 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/core/endpoint.hpp"
 #include "common/core/livox/commands.hpp"
+#include "common/core/livox/data_packet.hpp"
+#include "common/core/livox/device_status.hpp"
+#include "common/core/simulation/injected_errors.hpp"
 
 namespace clearway::core {
+
+/// A bad network between a sensor and its host, for data packets. XML element:
+/// <simulator><mid70><network_fault>.
+struct NetworkFaultConfig {
+  ErrorTimes times;
+  double loss = 0.0;
+  double duplicates = 0.0;
+  double reorder = 0.0;
+  std::int64_t reorder_us = 3'000;
+  std::int64_t jitter_us = 0;
+
+  template <typename Self, typename Visitor>
+  static void Visit(Self& self, Visitor& visitor) {
+    ErrorTimes::Visit(self.times, visitor);
+    visitor.Number("loss", self.loss, 0.0, 1.0, "Share of the packets that never arrive.");
+    visitor.Number("duplicates", self.duplicates, 0.0, 1.0, "Share that arrives twice.");
+    visitor.Number("reorder", self.reorder, 0.0, 1.0, "Share that others overtake.");
+    visitor.Milliseconds(
+        "reorder_ms", self.reorder_us, 0.001, 1000.0, "How much later those arrive [ms].");
+    visitor.Milliseconds("jitter_ms",
+                         self.jitter_us,
+                         0.0,
+                         1000.0,
+                         "Each packet is late by something between 0 and this, in order [ms].");
+  }
+  [[nodiscard]] std::vector<std::string> Validate() const { return times.Validate(); }
+};
+
+/// What a sensor does not say.
+enum class Silenced : std::uint8_t { kAll, kData, kHeartbeats };
+inline constexpr std::array<std::pair<const char*, Silenced>, 3> kSilencedNames{
+    {{"all", Silenced::kAll}, {"data", Silenced::kData}, {"heartbeats", Silenced::kHeartbeats}}};
+
+/// A sensor that is not heard. XML element: <simulator><mid70><silence>.
+struct SilenceConfig {
+  ErrorTimes times;
+  Silenced what = Silenced::kAll;
+
+  template <typename Self, typename Visitor>
+  static void Visit(Self& self, Visitor& visitor) {
+    ErrorTimes::Visit(self.times, visitor);
+    visitor.Choice("what",
+                   self.what,
+                   kSilencedNames,
+                   "\"all\": as with the cable pulled; \"data\": no points; \"heartbeats\": no "
+                   "answers to them.");
+  }
+  [[nodiscard]] std::vector<std::string> Validate() const { return times.Validate(); }
+};
+
+/// A sensor without power. XML element: <simulator><mid70><power_cut>.
+struct PowerCutConfig {
+  ErrorTimes times;
+
+  template <typename Self, typename Visitor>
+  static void Visit(Self& self, Visitor& visitor) {
+    ErrorTimes::Visit(self.times, visitor);
+  }
+  [[nodiscard]] std::vector<std::string> Validate() const { return times.Validate(); }
+};
+
+/// A jump of a sensor's own clock. XML element: <simulator><mid70><clock_step>.
+struct ClockStepConfig {
+  double at_s = 0.0;
+  double step_s = 1.0;
+
+  template <typename Self, typename Visitor>
+  static void Visit(Self& self, Visitor& visitor) {
+    visitor.Number("at_s", self.at_s, 0.0, 86400.0, "When, after the simulator's start [s].");
+    visitor.Number("step_s", self.step_s, -86400.0, 86400.0, "By how much [s].");
+  }
+};
+
+/// A sensor that gets another address. XML element: <simulator><mid70><address_change>.
+struct AddressChangeConfig {
+  double at_s = 0.0;
+  std::string ip = "127.0.0.3";
+
+  template <typename Self, typename Visitor>
+  static void Visit(Self& self, Visitor& visitor) {
+    visitor.Number("at_s", self.at_s, 0.0, 86400.0, "When, after the simulator's start [s].");
+    visitor.Text("ip", self.ip, "Its new address.");
+  }
+  [[nodiscard]] std::vector<std::string> Validate() const {
+    if (ParseIpv4(ip)) return {};
+    return {"ip \"" + ip + "\" is not an address like 192.168.1.101"};
+  }
+};
+
+inline constexpr std::array<std::pair<const char*, livox::Severity>, 3> kSeverityNames{
+    {{"ok", livox::Severity::kOk},
+     {"warning", livox::Severity::kWarning},
+     {"error", livox::Severity::kError}}};
+
+/// What a sensor reports of itself. XML element: <simulator><mid70><status_fault>.
+struct StatusFaultConfig {
+  ErrorTimes times;
+  livox::Severity temperature = livox::Severity::kOk;
+  livox::Severity voltage = livox::Severity::kOk;
+  livox::Severity motor = livox::Severity::kOk;
+  livox::Severity window = livox::Severity::kOk;
+
+  template <typename Self, typename Visitor>
+  static void Visit(Self& self, Visitor& visitor) {
+    ErrorTimes::Visit(self.times, visitor);
+    visitor.Choice("temperature", self.temperature, kSeverityNames, "Too hot or too cold.");
+    visitor.Choice("voltage", self.voltage, kSeverityNames, "Its supply.");
+    visitor.Choice("motor", self.motor, kSeverityNames, "That turns its prisms.");
+    visitor.Choice("window", self.window, kSeverityNames, "Dirty or covered.");
+  }
+  [[nodiscard]] std::vector<std::string> Validate() const { return times.Validate(); }
+
+  [[nodiscard]] livox::DeviceStatus Status() const {
+    livox::DeviceStatus status;
+    status.temperature = temperature;
+    status.voltage = voltage;
+    status.motor = motor;
+    status.window = window;
+    for (const livox::Severity part : {temperature, voltage, motor, window}) {
+      if (part > status.system) status.system = part;
+    }
+    return status;
+  }
+};
+
+inline constexpr std::array<std::pair<const char*, livox::TimestampType>, 4> kTimeSyncNames{
+    {{"none", livox::TimestampType::kNoSync},
+     {"ptp", livox::TimestampType::kPtp},
+     {"gps", livox::TimestampType::kGps},
+     {"pps", livox::TimestampType::kPps}}};
 
 /// A MID-70 that the simulator is, on the network. XML element: <simulator><mid70>.
 struct EmulatedSensorConfig {
@@ -16,24 +151,31 @@ struct EmulatedSensorConfig {
   std::string broadcast_code = "3GGDJ6K00100101";
   std::string ip = "127.0.0.2";
   std::string broadcast_to = "127.0.0.1";
+  std::int64_t boot_us = 200'000;
+  std::int64_t start_up_us = 1'000'000;
   std::int64_t host_timeout_us = 5'000'000;
+  bool lets_others_take_over = true;
+  double uptime_s = 100.0;
+  double clock_drift_ppm = 0.0;
+  livox::TimestampType time_sync = livox::TimestampType::kNoSync;
+  std::int64_t time_sync_error_us = 0;
+  std::vector<NetworkFaultConfig> network_faults;
+  std::vector<SilenceConfig> silences;
+  std::vector<PowerCutConfig> power_cuts;
+  std::vector<ClockStepConfig> clock_steps;
+  std::vector<AddressChangeConfig> address_changes;
+  std::vector<StatusFaultConfig> status_faults;
 
   template <typename Self, typename Visitor>
   static void Visit(Self& self, Visitor& visitor) {
-    visitor.Text("sensor", self.sensor, "Name of its <vehicle><sensor>: where it is mounted.");
-    visitor.Text("broadcast_code", self.broadcast_code, "15 characters by which it is known.");
-    visitor.Text("ip",
-                 self.ip,
-                 "Its own address; 127.0.0.2, .3, ... on this host, or that of an interface.");
-    visitor.Text("broadcast_to",
-                 self.broadcast_to,
-                 "Where it announces itself: 255.255.255.255 as real ones do, or one host.");
-    visitor.Milliseconds("host_timeout_ms",
-                         self.host_timeout_us,
-                         500.0,
-                         60000.0,
-                         "Without a heartbeat for so long it stops and announces itself again "
-                         "[ms]. What a real one takes is not known.");
+    VisitIdentity(self, visitor);
+    VisitTime(self, visitor);
+    visitor.List("network_fault", self.network_faults, "A bad network for its points.");
+    visitor.List("silence", self.silences, "It is not heard.");
+    visitor.List("power_cut", self.power_cuts, "It is switched off, and on again.");
+    visitor.List("clock_step", self.clock_steps, "Its clock jumps.");
+    visitor.List("address_change", self.address_changes, "It gets another address.");
+    visitor.List("status_fault", self.status_faults, "It finds something wrong with itself.");
   }
 
   [[nodiscard]] std::vector<std::string> Validate() const {
@@ -44,9 +186,58 @@ struct EmulatedSensorConfig {
       }
     }
     if (broadcast_code.empty() || broadcast_code.size() > livox::Broadcast::kMaxCodeLength) {
-      broken.push_back("broadcast_code needs 1 to 15 characters");
+      broken.emplace_back("broadcast_code needs 1 to 15 characters");
     }
     return broken;
+  }
+
+ private:
+  template <typename Self, typename Visitor>
+  static void VisitIdentity(Self& self, Visitor& visitor) {
+    visitor.Text("sensor", self.sensor, "Name of its <vehicle><sensor>: where it is mounted.");
+    visitor.Text("broadcast_code", self.broadcast_code, "15 characters by which it is known.");
+    visitor.Text("ip",
+                 self.ip,
+                 "Its own address; 127.0.0.2, .3, ... on this host, or that of an interface.");
+    visitor.Text("broadcast_to",
+                 self.broadcast_to,
+                 "Where it announces itself: 255.255.255.255 as real ones do, or one host.");
+    visitor.Milliseconds(
+        "boot_ms", self.boot_us, 0.0, 60000.0, "From power on to its first broadcast [ms].");
+    visitor.Milliseconds(
+        "start_up_ms", self.start_up_us, 0.0, 600000.0, "From power on until it measures [ms].");
+    visitor.Milliseconds("host_timeout_ms",
+                         self.host_timeout_us,
+                         500.0,
+                         60000.0,
+                         "Without a heartbeat for so long it stops and announces itself again "
+                         "[ms]. What a real one takes is not known.");
+    visitor.Flag("lets_others_take_over",
+                 self.lets_others_take_over,
+                 "A second host's handshake is accepted. What a real one does is not known.");
+  }
+
+  template <typename Self, typename Visitor>
+  static void VisitTime(Self& self, Visitor& visitor) {
+    visitor.Number("uptime_s",
+                   self.uptime_s,
+                   0.0,
+                   1e7,
+                   "How long it says to have been on when the simulator starts [s].");
+    visitor.Number("clock_drift_ppm",
+                   self.clock_drift_ppm,
+                   -1000.0,
+                   1000.0,
+                   "How much faster than true time its clock runs [ppm].");
+    visitor.Choice("time_sync",
+                   self.time_sync,
+                   kTimeSyncNames,
+                   "What its stamps come from; \"none\": its own clock since power on.");
+    visitor.Milliseconds("time_sync_error_ms",
+                         self.time_sync_error_us,
+                         -86400000.0,
+                         86400000.0,
+                         "How far PTP and GPS stamps are off [ms].");
   }
 };
 
