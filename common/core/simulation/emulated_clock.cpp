@@ -54,8 +54,7 @@ EmulatedClock::Stamp EmulatedClock::StampAt(std::int64_t oscillator_ns,
     return Stamp{type, static_cast<std::uint64_t>(std::max<std::int64_t>(ns, 0))};
   };
   const double late_ns = static_cast<double>(oscillator_ns) * (rate_ / (1.0 + rate_));
-  const std::int64_t true_ns =
-      started_us_ * kNsPerUs + oscillator_ns - std::llround(late_ns);
+  const std::int64_t true_ns = started_us_ * kNsPerUs + oscillator_ns - std::llround(late_ns);
   const std::int64_t source_ns = true_ns + (utime_minus_true_us + sync.error_us) * kNsPerUs;
   switch (sync.source) {
     case TimestampType::kPtp:

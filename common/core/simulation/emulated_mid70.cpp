@@ -286,8 +286,7 @@ bool EmulatedMid70::SetMode(ByteView data, std::int64_t now_us) {
 bool EmulatedMid70::SetUtc(ByteView data, std::int64_t now_us) {
   if (data.size() != 8) return false;
   // The body is laid out as a GPS stamp.
-  const std::optional<std::int64_t> utc_ns =
-      livox::GpsUtcNs(livox::Load<std::uint64_t>(data, 0));
+  const std::optional<std::int64_t> utc_ns = livox::GpsUtcNs(livox::Load<std::uint64_t>(data, 0));
   if (!utc_ns) return false;
   utc_ = UtcTime{*utc_ns, now_us};
   return true;

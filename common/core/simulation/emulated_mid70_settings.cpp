@@ -50,8 +50,8 @@ std::optional<std::vector<std::uint16_t>> ParseKeys(ByteView data) {
 
 // The first key that a MID-70 does not have.
 std::optional<std::uint16_t> UnknownOf(const std::vector<std::uint16_t>& keys) {
-  const auto unknown = std::find_if(
-      keys.begin(), keys.end(), [](std::uint16_t key) { return key != kSlotKey; });
+  const auto unknown =
+      std::find_if(keys.begin(), keys.end(), [](std::uint16_t key) { return key != kSlotKey; });
   if (unknown == keys.end()) return std::nullopt;
   return *unknown;
 }

@@ -15,6 +15,7 @@ namespace clearway::core {
 /// What a simulated MID-70 can see. XML element: <lidar>.
 struct SimulatedLidarConfig {
   double noise_sigma_m = 0.02;
+  double near_noise_sigma_m = 0.02;
   double min_range_m = 0.05;
   double range_at_10_percent_m = 90.0;
 
@@ -26,6 +27,11 @@ struct SimulatedLidarConfig {
         0.0,
         1.0,
         "Standard deviation of the range [m]. The vendor states at most 0.02 m at 20 m.");
+    visitor.Number("near_noise_sigma_m",
+                   self.near_noise_sigma_m,
+                   0.0,
+                   1.0,
+                   "The same below 1 m [m]. The vendor states at most 0.03 m from 0.2 to 1 m.");
     visitor.Number("min_range_m",
                    self.min_range_m,
                    0.0,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace clearway::core {
@@ -112,26 +113,47 @@ RayCaster::Solid RayCaster::Prepare(const Primitive& primitive, const Vector3d& 
   Solid solid;
   solid.primitive = primitive;
   solid.R_local_map = primitive.T_map_local.linear().transpose();
-  const Vector3d to_centre = primitive.T_map_local.translation() - origin_map;
-  solid.origin_local = -(solid.R_local_map * to_centre);
-  const double distance = to_centre.norm();
-  const double radius = primitive.half_extents.norm();
-  solid.axis_map = distance > 0.0 ? Vector3d(to_centre / distance) : Vector3d::UnitX();
-  // A hair wider than the bounding sphere's cone, so that rounding rejects nothing.
-  const double sine = 1.0001 * radius / std::max(distance, 1e-12);
-  solid.min_cos = sine >= 1.0 ? -2.0 : std::sqrt(1.0 - sine * sine) - 1e-9;
+  solid.origin_local = solid.R_local_map * (origin_map - primitive.T_map_local.translation());
   return solid;
 }
 
-RayCaster::RayCaster(const SceneGeometry& geometry, const Vector3d& origin_map)
-    : floor_(geometry.floor), origin_map_(origin_map) {
-  solids_.reserve(geometry.primitives.size());
+RayCaster::Cone RayCaster::ConeOf(const Primitive& primitive, const Vector3d& origin_map) {
+  const Vector3d to_centre = primitive.T_map_local.translation() - origin_map;
+  const double distance = to_centre.norm();
+  const double radius = primitive.half_extents.norm();
+  const Vector3d axis = distance > 0.0 ? Vector3d(to_centre / distance) : Vector3d::UnitX();
+  // A hair wider than the bounding sphere's cone, so that rounding rejects nothing.
+  const double sine = 1.0001 * radius / std::max(distance, 1e-12);
+  const double min_cos = sine >= 1.0 ? -2.0 : std::sqrt(1.0 - sine * sine) - 1e-9;
+  return {axis.x(), axis.y(), axis.z(), min_cos};
+}
+
+void RayCaster::Aim(const SceneGeometry& geometry,
+                    const Vector3d& origin_map,
+                    const std::optional<ViewCone>& cone) {
+  floor_ = geometry.floor;
+  origin_map_ = origin_map;
+  cones_.clear();
+  solids_.clear();
+  pits_.clear();
   for (const Primitive& primitive : geometry.primitives) {
+    const Cone one = ConeOf(primitive, origin_map);
+    if (cone && one.min_cos > -1.0) {
+      // Two cones that share no ray: their axes are further apart than both half angles.
+      const double between = cone->axis_map.dot(Vector3d(one.x, one.y, one.z));
+      const double reach_rad = cone->half_angle_rad + std::acos(std::min(one.min_cos, 1.0)) + 1e-6;
+      if (reach_rad < std::numbers::pi && between < std::cos(reach_rad)) continue;
+    }
+    cones_.push_back(one);
     solids_.push_back(Prepare(primitive, origin_map));
   }
   for (const Pit& pit : geometry.pits) {
-    const Primitive hollow{
-        Primitive::Shape::kBox, pit.T_map_local, pit.half_extents, pit.reflectivity, pit.object};
+    const Primitive hollow{.shape = Primitive::Shape::kBox,
+                           .T_map_local = pit.T_map_local,
+                           .half_extents = pit.half_extents,
+                           .reflectivity = pit.reflectivity,
+                           .object = pit.object,
+                           .material = Material::kDiffuse};
     pits_.push_back(Prepare(hollow, origin_map));
   }
 }
@@ -146,16 +168,25 @@ std::optional<RayHit> RayCaster::CastToFloor(const Vector3d& direction_map) cons
     if (std::abs(entry.x()) > half.x() || std::abs(entry.y()) > half.y()) continue;
     const Span span = CrossBox(pit.origin_local, direction, half);
     if (span.IsEmpty()) continue;
-    return RayHit{span.exit, span.exit_cos, pit.primitive.reflectivity, pit.primitive.object};
+    return RayHit{span.exit,
+                  span.exit_cos,
+                  pit.primitive.reflectivity,
+                  pit.primitive.object,
+                  Material::kDiffuse};
   }
-  return RayHit{range_m, -direction_map.z(), floor_.reflectivity, kFloorObject};
+  return RayHit{range_m, -direction_map.z(), floor_.reflectivity, kFloorObject, floor_.material};
 }
 
-std::optional<RayHit> RayCaster::Cast(const Vector3d& direction_map) const {
+std::optional<RayHit> RayCaster::Cast(const Vector3d& direction_map, bool glass_too) const {
   std::optional<RayHit> best = CastToFloor(direction_map);
   double best_range_m = best ? best->range_m : kInfinity;
-  for (const Solid& solid : solids_) {
-    if (solid.axis_map.dot(direction_map) < solid.min_cos) continue;
+  for (std::size_t i = 0; i < cones_.size(); ++i) {
+    const Cone& cone = cones_[i];
+    const double cosine =
+        cone.x * direction_map.x() + cone.y * direction_map.y() + cone.z * direction_map.z();
+    if (cosine < cone.min_cos) continue;
+    const Solid& solid = solids_[i];
+    if (!glass_too && solid.primitive.material == Material::kGlass) continue;
     const Span span = Cross(solid.primitive, solid.origin_local, solid.R_local_map * direction_map);
     if (span.IsEmpty() || span.exit <= 0.0) continue;
     const bool is_within = span.enter <= 0.0;
@@ -165,7 +196,8 @@ std::optional<RayHit> RayCaster::Cast(const Vector3d& direction_map) const {
     best = RayHit{range_m,
                   is_within ? span.exit_cos : span.enter_cos,
                   solid.primitive.reflectivity,
-                  solid.primitive.object};
+                  solid.primitive.object,
+                  solid.primitive.material};
   }
   return best;
 }

@@ -14,11 +14,13 @@ namespace clearway::core {
 struct SceneFloor {
   bool present = true;
   double reflectivity = 0.3;
+  Material material = Material::kDiffuse;
 
   template <typename Self, typename Visitor>
   static void Visit(Self& self, Visitor& visitor) {
     visitor.Flag("present", self.present, "Without a floor, shots below the horizon are lost.");
     visitor.Number("reflectivity", self.reflectivity, 0.0, 1.0, "Share of light thrown back.");
+    visitor.Choice("material", self.material, kMaterialNames, kMaterialHelp);
   }
 };
 
@@ -58,6 +60,7 @@ struct SceneConfig {
   std::vector<SceneRamp> ramps;
   std::vector<SceneHole> holes;
   std::vector<ScenePerson> persons;
+  std::vector<SceneDust> dust;
 
   template <typename Self, typename Visitor>
   static void Visit(Self& self, Visitor& visitor) {
@@ -73,6 +76,7 @@ struct SceneConfig {
     visitor.List("ramp", self.ramps, "Wedges.");
     visitor.List("hole", self.holes, "Pits in the floor.");
     visitor.List("person", self.persons, "People.");
+    visitor.List("dust", self.dust, "Clouds of dust.");
   }
 
   /// Rules that concern the scene as a whole: names are there and unique. The rules of a single

@@ -32,9 +32,13 @@ class Builder {
 
   SceneGeometry Take() { return std::move(geometry_); }
 
-  void Begin(std::int32_t object, double reflectivity, const Isometry3d& T_map_object) {
+  void Begin(std::int32_t object,
+             double reflectivity,
+             Material material,
+             const Isometry3d& T_map_object) {
     object_ = object;
     reflectivity_ = reflectivity;
+    material_ = material;
     T_map_object_ = T_map_object;
   }
 
@@ -72,12 +76,14 @@ class Builder {
   void AddSolid(Primitive::Shape shape, const Vector3d& bottom, const Vector3d& size) {
     Isometry3d T_map_local = T_map_object_;
     T_map_local.translate(bottom + Vector3d(0.0, 0.0, 0.5 * size.z()));
-    geometry_.primitives.push_back({shape, T_map_local, 0.5 * size, reflectivity_, object_});
+    geometry_.primitives.push_back(
+        {shape, T_map_local, 0.5 * size, reflectivity_, object_, material_});
   }
 
   double time_s_;
   std::int32_t object_ = kNoObject;
   double reflectivity_ = 0.0;
+  Material material_ = Material::kDiffuse;
   Isometry3d T_map_object_ = Isometry3d::Identity();
   SceneGeometry geometry_;
 };
@@ -147,7 +153,8 @@ void Builder::Add(const SceneCable& cable) {
                                   T_map_local,
                                   Vector3d(radius_m, radius_m, 0.5 * cable.length_m),
                                   reflectivity_,
-                                  object_});
+                                  object_,
+                                  material_});
 }
 
 void Builder::Add(const SceneHole& hole) {
@@ -225,15 +232,31 @@ SceneGeometry GeometryAt(const SceneConfig& scene, std::int64_t time_us) {
       if (!IsPresent(element.object, time_s)) return;
       builder.Begin(index,
                     element.object.reflectivity,
+                    element.object.material,
                     FrameOf(MotionAt(element.object, time_s), element.object.z_m));
     } else if constexpr (std::is_same_v<Element, SceneWall>) {
-      builder.Begin(index, element.reflectivity, FrameOf(MiddleOf(element), 0.0));
+      builder.Begin(index, element.reflectivity, element.material, FrameOf(MiddleOf(element), 0.0));
     } else {
-      builder.Begin(index, element.reflectivity, Isometry3d::Identity());
+      builder.Begin(index, element.reflectivity, element.material, Isometry3d::Identity());
     }
     builder.Add(element);
   });
   return builder.Take();
+}
+
+bool ChangesWithTime(const SceneObject& object) {
+  const bool moves = object.speed_mps > 0.0 && !object.waypoints.empty();
+  return moves || object.appear_s >= 0.0 || object.vanish_s >= 0.0;
+}
+
+bool ChangesWithTime(const SceneConfig& scene) {
+  bool changes = false;
+  ForEachObject(scene, [&](const auto& element, ObjectKind, std::int32_t) {
+    if constexpr (Placed<std::decay_t<decltype(element)>>) {
+      changes = changes || ChangesWithTime(element.object);
+    }
+  });
+  return changes;
 }
 
 }  // namespace clearway::core

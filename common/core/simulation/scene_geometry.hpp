@@ -35,6 +35,12 @@ inline constexpr std::int32_t kNoObject = -1;
 /// Object index of a return from the floor.
 inline constexpr std::int32_t kFloorObject = -2;
 
+/// Object index of a return from a wall of the map.
+inline constexpr std::int32_t kMapObject = -3;
+
+/// Object index of a return from dust.
+inline constexpr std::int32_t kDustObject = -4;
+
 /// What does not change with time. An object's index is its place in DescribeObjects().
 struct ObjectInfo {
   std::string name;
@@ -58,6 +64,7 @@ struct Primitive {
   Eigen::Vector3d half_extents = Eigen::Vector3d::Zero();  ///< [m]
   double reflectivity = 0.0;
   std::int32_t object = kNoObject;
+  Material material = Material::kDiffuse;
 };
 
 /// A cuboid cut out of the floor; its upper face lies in z = 0.
@@ -77,6 +84,11 @@ struct SceneGeometry {
 
 /// The scene `time_us` after its start. O(objects).
 [[nodiscard]] SceneGeometry GeometryAt(const SceneConfig& scene, std::int64_t time_us);
+
+/// Whether the solids of an object change with time.
+[[nodiscard]] bool ChangesWithTime(const SceneObject& object);
+/// Whether those of any object do.
+[[nodiscard]] bool ChangesWithTime(const SceneConfig& scene);
 
 /// The upright box around an object that is present, in the map frame: ground truth.
 struct TruthBox {

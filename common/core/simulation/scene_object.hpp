@@ -1,10 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace clearway::core {
+
+/// How a surface throws light back.
+enum class Material : std::int8_t {
+  kDiffuse,  ///< Into all directions.
+  kGlass,    ///< Lets the light through, but for a glint where it is met head-on.
+  kGlossy    ///< Like a mirror: what it shows seems to lie behind it, or below the floor.
+};
+inline constexpr std::array<std::pair<const char*, Material>, 3> kMaterialNames{
+    {{"diffuse", Material::kDiffuse}, {"glass", Material::kGlass}, {"glossy", Material::kGlossy}}};
+inline constexpr char kMaterialHelp[] =
+    "\"diffuse\"; \"glass\": shots pass through it, but for a glint head-on; \"glossy\": a "
+    "mirror, whose images seem to lie behind it. Black is diffuse with a small reflectivity.";
 
 /// A place that a moving object goes to. XML element: <waypoint> in any object of a scene.
 struct SceneWaypoint {
@@ -30,6 +45,7 @@ struct SceneObject {
   double z_m = 0.0;
   double yaw_rad = 0.0;
   double reflectivity = 0.5;
+  Material material = Material::kDiffuse;
   bool on_map = false;
   double appear_s = -1.0;
   double vanish_s = -1.0;
@@ -70,6 +86,7 @@ struct SceneObject {
                    1.0,
                    "Share of the laser's light that it throws back. 0 swallows every shot; below "
                    "0.1 its far and slanted faces return nothing.");
+    visitor.Choice("material", self.material, kMaterialNames, kMaterialHelp);
     visitor.Flag("on_map", self.on_map, "Whether the robot's map shows it.");
   }
 

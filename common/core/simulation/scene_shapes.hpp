@@ -171,6 +171,7 @@ struct SceneWall {
   double thickness_m = 0.1;
   double height_m = 2.5;
   double reflectivity = 0.6;
+  Material material = Material::kDiffuse;
   bool on_map = true;
 
   template <typename Self, typename Visitor>
@@ -187,6 +188,7 @@ struct SceneWall {
                    "Half of it lies on either side of the line between the ends [m].");
     visitor.Number("height_m", self.height_m, 0.01, 100.0, "Height above the floor [m].");
     visitor.Number("reflectivity", self.reflectivity, 0.0, 1.0, "Share of light thrown back.");
+    visitor.Choice("material", self.material, kMaterialNames, kMaterialHelp);
     visitor.Flag("on_map", self.on_map, "Whether the robot's map shows it.");
   }
   [[nodiscard]] std::vector<std::string> Validate() const;
@@ -202,6 +204,7 @@ struct SceneRoom {
   double height_m = 2.5;
   bool ceiling = true;
   double reflectivity = 0.6;
+  Material material = Material::kDiffuse;
   bool on_map = true;
 
   template <typename Self, typename Visitor>
@@ -214,9 +217,37 @@ struct SceneRoom {
     visitor.Number("height_m", self.height_m, 0.1, 100.0, "From floor to ceiling [m].");
     visitor.Flag("ceiling", self.ceiling, "Whether it has one; without, the walls end there.");
     visitor.Number("reflectivity", self.reflectivity, 0.0, 1.0, "Of walls and ceiling.");
+    visitor.Choice("material", self.material, kMaterialNames, kMaterialHelp);
     visitor.Flag("on_map", self.on_map, "Whether the robot's map shows its walls.");
   }
   [[nodiscard]] std::vector<std::string> Validate() const;
+};
+
+/// A cloud of dust: an upright cylinder in which shots return from nothing, tagged as noise.
+/// XML element: <dust>.
+struct SceneDust {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double radius_m = 1.0;
+  double height_m = 2.0;
+  double density_per_m = 0.05;
+  double from_s = 0.0;
+  double to_s = -1.0;
+
+  template <typename Self, typename Visitor>
+  static void Visit(Self& self, Visitor& visitor) {
+    visitor.Number("x_m", self.x_m, -1000.0, 1000.0, "Middle, map frame [m].");
+    visitor.Number("y_m", self.y_m, -1000.0, 1000.0, "Middle, map frame [m].");
+    visitor.Number("radius_m", self.radius_m, 0.01, 1000.0, "Radius [m].");
+    visitor.Number("height_m", self.height_m, 0.01, 100.0, "From the floor up [m].");
+    visitor.Number("density_per_m",
+                   self.density_per_m,
+                   0.0,
+                   100.0,
+                   "Returns that a shot would meet on each metre of its way through it [1/m].");
+    visitor.Number("from_s", self.from_s, 0.0, 86400.0, "When it rises, after the start [s].");
+    visitor.Number("to_s", self.to_s, -1.0, 86400.0, "When it has settled [s]; -1: never.");
+  }
 };
 
 }  // namespace clearway::core
