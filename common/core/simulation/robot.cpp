@@ -37,7 +37,7 @@ Robot::Robot(const RobotConfig& robot,
              const SceneConfig& scene,
              const std::optional<MapWalls>& walls)
     : config_(robot),
-      surroundings_(scene, walls, {vehicle.Footprint(), robot.clearance_m, robot.height_m}),
+      floor_plan_(scene, walls, {vehicle.Footprint(), robot.clearance_m, robot.height_m}),
       drive_train_(robot, vehicle),
       follower_(MakeFollower(robot, vehicle, scene, drive_train_)),
       gate_(robot.gate),
@@ -102,7 +102,7 @@ void Robot::Step() {
   }
   RobotState after = drive_train_.Step(before, set_point_, time_us);
   if (after.in_map != before.in_map) {
-    if (const std::optional<std::int32_t> object = surroundings_.Touched(after.in_map)) {
+    if (const std::optional<std::int32_t> object = floor_plan_.Touched(after.in_map)) {
       NoteContact(*object, std::abs(before.v_mps));
       // It stands, wheels and all, where it last touched nothing.
       const double pitch_rad = after.pitch_rad;
@@ -120,9 +120,9 @@ void Robot::Step() {
 // Objects move, too: what comes to the robot touches it just as well.
 void Robot::LookAround() {
   const RobotState& state = history_[static_cast<std::size_t>(steps_) % kHistory];
-  surroundings_.MoveTo(steps_ * kStep_us);
+  floor_plan_.MoveTo(steps_ * kStep_us);
   const double within_m = std::max(nearest_.distance_m, touched_ ? kContactEnd_m : 0.0);
-  const Surroundings::Neighbour now = surroundings_.Nearest(state.in_map, std::max(within_m, 1e-9));
+  const FloorPlan::Neighbour now = floor_plan_.Nearest(state.in_map, std::max(within_m, 1e-9));
   if (now.distance_m < nearest_.distance_m) nearest_ = now;
   if (now.distance_m <= 0.0) {
     NoteContact(now.object, std::abs(state.v_mps));

@@ -9,10 +9,10 @@
 
 #include "common/core/guard/base_gate.hpp"
 #include "common/core/simulation/drive_train.hpp"
+#include "common/core/simulation/floor_plan.hpp"
 #include "common/core/simulation/path_follower.hpp"
 #include "common/core/simulation/robot_config.hpp"
 #include "common/core/simulation/robot_state.hpp"
-#include "common/core/simulation/surroundings.hpp"
 #include "common/core/vehicle.hpp"
 
 namespace clearway::core {
@@ -61,10 +61,8 @@ class Robot {
   [[nodiscard]] std::optional<std::int32_t> touched() const { return touched_; }
   /// The least distance between footprint and anything so far, looked at every 10 ms; infinity
   /// while nothing was within 5 m.
-  [[nodiscard]] const Surroundings::Neighbour& nearest() const { return nearest_; }
-  [[nodiscard]] std::string NameOf(std::int32_t object) const {
-    return surroundings_.NameOf(object);
-  }
+  [[nodiscard]] const FloorPlan::Neighbour& nearest() const { return nearest_; }
+  [[nodiscard]] std::string NameOf(std::int32_t object) const { return floor_plan_.NameOf(object); }
 
   static constexpr double kContactEnd_m = 0.05;
 
@@ -78,7 +76,7 @@ class Robot {
   void NoteContact(std::int32_t object, double speed_mps);
 
   RobotConfig config_;
-  Surroundings surroundings_;
+  FloorPlan floor_plan_;
   DriveTrain drive_train_;
   std::optional<PathFollower> follower_;
   BaseGate gate_;
@@ -88,7 +86,7 @@ class Robot {
   std::vector<RobotState> history_;
   std::vector<Contact> contacts_;
   std::optional<std::int32_t> touched_;
-  Surroundings::Neighbour nearest_;
+  FloorPlan::Neighbour nearest_;
 };
 
 }  // namespace clearway::core

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "common/core/simulation/surroundings.hpp"
+#include "common/core/simulation/floor_plan.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -75,9 +75,9 @@ constexpr std::uint8_t kOccupiedFrom = 65;
 
 }  // namespace
 
-Surroundings::Surroundings(const SceneConfig& scene,
-                           const std::optional<MapWalls>& walls,
-                           const RobotBody& body)
+FloorPlan::FloorPlan(const SceneConfig& scene,
+                     const std::optional<MapWalls>& walls,
+                     const RobotBody& body)
     : scene_(scene), walls_(walls), body_(body), does_change_(DoesChange(scene)) {
   if (walls_ && walls_->height_m <= body_.clearance_m) walls_.reset();
   if (walls_) field_.emplace(walls_->grid, kOccupiedFrom);
@@ -85,7 +85,7 @@ Surroundings::Surroundings(const SceneConfig& scene,
   MoveTo(0);
 }
 
-void Surroundings::MoveTo(std::int64_t time_us) {
+void FloorPlan::MoveTo(std::int64_t time_us) {
   if (time_us_ && (!does_change_ || *time_us_ == time_us)) return;
   time_us_ = time_us;
   shapes_.clear();
@@ -102,7 +102,7 @@ void Surroundings::MoveTo(std::int64_t time_us) {
   }
 }
 
-FlatShape Surroundings::FootprintAt(const PlanarPose& pose) const {
+FlatShape FloorPlan::FootprintAt(const PlanarPose& pose) const {
   const Eigen::Rotation2Dd turn(pose.yaw_rad);
   const Vector2d origin(pose.x_m, pose.y_m);
   FlatShape shape;
@@ -114,13 +114,13 @@ FlatShape Surroundings::FootprintAt(const PlanarPose& pose) const {
   return shape;
 }
 
-std::optional<std::int32_t> Surroundings::Touched(const PlanarPose& pose) const {
+std::optional<std::int32_t> FloorPlan::Touched(const PlanarPose& pose) const {
   const Neighbour nearest = Nearest(pose, 1e-9);
   if (nearest.distance_m > 0.0) return std::nullopt;
   return nearest.object;
 }
 
-Surroundings::Neighbour Surroundings::Nearest(const PlanarPose& pose, double within_m) const {
+FloorPlan::Neighbour FloorPlan::Nearest(const PlanarPose& pose, double within_m) const {
   const FlatShape footprint = FootprintAt(pose);
   Neighbour best{within_m, kNoObject};
   for (const FlatShape& shape : shapes_) {
@@ -136,7 +136,7 @@ Surroundings::Neighbour Surroundings::Nearest(const PlanarPose& pose, double wit
   return best;
 }
 
-void Surroundings::ImproveByWalls(const FlatShape& footprint, Neighbour& best) const {
+void FloorPlan::ImproveByWalls(const FlatShape& footprint, Neighbour& best) const {
   const GridGeometry& grid = walls_->grid.geometry;
   // The field is between middles of cells, the point is anywhere in its cell.
   const double reach_m = footprint.reach_m + best.distance_m;
@@ -159,7 +159,7 @@ void Surroundings::ImproveByWalls(const FlatShape& footprint, Neighbour& best) c
   }
 }
 
-std::string Surroundings::NameOf(std::int32_t object) const {
+std::string FloorPlan::NameOf(std::int32_t object) const {
   if (object == kMapObject) return "a wall of the map";
   if (object < 0 || static_cast<std::size_t>(object) >= names_.size()) return "nothing";
   return names_[static_cast<std::size_t>(object)];

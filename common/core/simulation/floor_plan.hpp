@@ -25,7 +25,7 @@ struct RobotBody {
 };
 
 /// What stands around a robot, as seen from above. Thread safety: none.
-class Surroundings {
+class FloorPlan {
  public:
   /// Something near, or touched.
   struct Neighbour {
@@ -33,9 +33,7 @@ class Surroundings {
     std::int32_t object = kNoObject;                              ///< Or kMapObject.
   };
 
-  Surroundings(const SceneConfig& scene,
-               const std::optional<MapWalls>& walls,
-               const RobotBody& body);
+  FloorPlan(const SceneConfig& scene, const std::optional<MapWalls>& walls, const RobotBody& body);
 
   /// Takes the scene to a moment after its start. O(objects), and nothing in a scene where nothing
   /// ever moves, appears or vanishes.
