@@ -20,6 +20,7 @@ int ProcessMain(int argc, char** argv, const ProcessInfo& info, const MakeProces
   return GuardedMain(app, options, argc, argv, [&] {
     const config::LoadResult<GraphConfig> config = LoadConfig(options);
     if (AnsweredByConfig(options, config)) return kExitOk;
+    if (info.answer && info.answer(config.root)) return kExitOk;
 
     process::LiveRuntime runtime(config.root.buses, options.channel_prefix);
     process::Node node(

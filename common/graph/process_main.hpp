@@ -22,6 +22,8 @@ struct ProcessInfo {
   std::string description;  ///< One sentence, for --help.
   messages::Channel<status_t> status_channel;
   std::function<void(CLI::App&)> add_options = {};  ///< Options of its own; may be empty.
+  /// Does what needs no bus; true when that was all. May be empty.
+  std::function<bool(const GraphConfig&)> answer = {};
 };
 
 /// Makes the process object; it lives until the process stops.
