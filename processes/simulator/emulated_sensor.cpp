@@ -181,7 +181,7 @@ void EmulatedSensor::MakePacket(const EmulatedMid70::Sampling& sampling, std::in
   const core::livox::DataLayout layout = core::livox::LayoutOf(sampling.data_type);
   shots_.assign(layout.shots_in_packet, {});
   const std::int64_t first_shot = next_oscillator_ns_ / (kShotPeriod_us * kNsPerUs);
-  fire_(first_shot, begin_us, shots_);
+  fire_(first_shot, begin_us, device_.memory().return_mode, shots_);
   points_.clear();
   for (const core::SimulatedShot& shot : shots_) {
     for (std::size_t echo = 0; echo < layout.echoes; ++echo) {

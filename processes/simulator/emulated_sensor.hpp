@@ -32,8 +32,10 @@ class EmulatedSensor {
  public:
   /// What a sensor sees: `shots` of numbers from `first_shot` on, the first of them at `time_us` of
   /// the world's time.
-  using Fire = std::function<
-      void(std::int64_t first_shot, std::int64_t time_us, std::span<core::SimulatedShot> shots)>;
+  using Fire = std::function<void(std::int64_t first_shot,
+                                  std::int64_t time_us,
+                                  core::livox::ReturnMode mode,
+                                  std::span<core::SimulatedShot> shots)>;
 
   /// Throws net::NetworkError where its address or a port cannot be had.
   EmulatedSensor(const core::EmulatedSensorConfig& config,

@@ -30,6 +30,8 @@ SimulatorProcess::SimulatorProcess(const core::SimulatorConfig& config,
       node_(node),
       clock_(node.runtime()),
       world_(setting_.scene, setting_.walls),
+      tally_(core::DescribeObjects(setting_.scene).size(),
+             {.period_us = setting_.scan_period_us, .first_begin_us = -clock_.UtimeOf(0)}),
       base_(config.robot,
             vehicle,
             setting_.scene,
@@ -60,7 +62,8 @@ void SimulatorProcess::AddSensor(std::size_t index,
       seed,
       vehicle.sensors[static_cast<std::size_t>(*mounted)].T_vehicle_sensor(),
       world_,
-      base_));
+      base_,
+      tally_));
   // A sensor's time starts with it, a moment after the world's.
   const std::int64_t start_us = clock_.Now();
   sensors_.push_back(std::make_unique<EmulatedSensor>(
@@ -68,9 +71,11 @@ void SimulatorProcess::AddSensor(std::size_t index,
       seed,
       node_.runtime(),
       network,
-      [&eyes = *eyes_.back(), start_us](
-          std::int64_t first_shot, std::int64_t time_us, std::span<core::SimulatedShot> shots) {
-        eyes.Fire(first_shot, start_us + time_us, shots);
+      [&eyes = *eyes_.back(), start_us](std::int64_t first_shot,
+                                        std::int64_t time_us,
+                                        core::livox::ReturnMode mode,
+                                        std::span<core::SimulatedShot> shots) {
+        eyes.Fire(first_shot, start_us + time_us, mode, shots);
       }));
 }
 
@@ -94,6 +99,11 @@ void SimulatorProcess::PublishTruth(std::int64_t scan_id) {
   truth.scan_id = scan_id;
   truth.T_map_vehicle = base_.StateAt(end_us).in_map.Transform();
   truth.boxes = core::TruthBoxesAt(setting_.scene, end_us);
+  for (const core::RayTally& rays : tally_.TakeScan(end_us - setting_.scan_period_us)) {
+    truth.rays.push_back(
+        {.points = rays.points,
+         .first_ray_utime = rays.first_ray_us < 0 ? 0 : clock_.UtimeOf(rays.first_ray_us)});
+  }
   node_.Publish(kTruth, messages::ToTruth(truth));
 }
 

@@ -58,6 +58,7 @@ class SimulatorProcess {
   process::Node& node_;
   WorldClock clock_;
   core::World world_;
+  core::TruthTally tally_;
   SimulatedBase base_;
   std::vector<std::unique_ptr<SensorEyes>> eyes_;
   std::vector<std::unique_ptr<EmulatedSensor>> sensors_;
