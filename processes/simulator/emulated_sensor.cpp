@@ -2,6 +2,7 @@
 #include "processes/simulator/emulated_sensor.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "common/core/simulation/noise.hpp"
@@ -11,19 +12,21 @@ namespace clearway {
 namespace {
 
 using core::EmulatedMid70;
-using core::Endpoint;
 using core::Silenced;
 using core::livox::kShotPeriod_us;
 
 constexpr std::int64_t kTick_us = 1'000;
 constexpr std::int64_t kNsPerUs = 1'000;
 constexpr std::int64_t kLongestLag_us = 50'000;
+constexpr std::int64_t kRetry_us = 1'000'000;
+constexpr std::int64_t kSlowReading_us = 20;
 // Real ones of this family send their points from here.
 constexpr std::uint16_t kDataSourcePort = 60001;
 
 core::EmulatedMid70Config DeviceConfigOf(const core::EmulatedSensorConfig& config) {
   return {.broadcast_code = config.broadcast_code,
-          .announce_to = {*core::ParseIpv4(config.broadcast_to), core::livox::kBroadcastPort},
+          .announce_to = {*core::ParseIpv4(config.broadcast_to),
+                          static_cast<std::uint16_t>(config.broadcast_port)},
           .boot_us = config.boot_us,
           .start_up_us = config.start_up_us,
           .host_timeout_us = config.host_timeout_us,
@@ -36,6 +39,28 @@ core::EmulatedMid70Memory MemoryOf(const core::EmulatedSensorConfig& config) {
   return memory;
 }
 
+// What happens once is done in order of time, whatever the order in the file.
+core::EmulatedSensorConfig InOrder(core::EmulatedSensorConfig config) {
+  const auto sort = [](auto& events) {
+    std::stable_sort(
+        events.begin(), events.end(), [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
+  };
+  sort(config.clock_steps);
+  sort(config.address_changes);
+  return config;
+}
+
+std::int64_t ToUs(double seconds) {
+  return std::llround(seconds * 1e6);
+}
+
+template <typename Events>
+bool AnyHolds(const Events& events, std::int64_t now_us) {
+  return std::any_of(events.begin(), events.end(), [now_us](const auto& event) {
+    return event.times.Hold(now_us);
+  });
+}
+
 }  // namespace
 
 EmulatedSensor::EmulatedSensor(const core::EmulatedSensorConfig& config,
@@ -43,29 +68,62 @@ EmulatedSensor::EmulatedSensor(const core::EmulatedSensorConfig& config,
                                process::Runtime& runtime,
                                net::Network& network,
                                Fire fire)
-    : config_(config),
-      seed_(seed),
+    : config_(InOrder(config)),
       runtime_(runtime),
       network_(network),
       fire_(std::move(fire)),
       start_us_(runtime.MonotonicUs()),
       utime_minus_true_us_(runtime.UtimeNow()),
       device_(DeviceConfigOf(config), MemoryOf(config), 0),
-      clock_(config.clock_drift_ppm, static_cast<std::int64_t>(config.uptime_s * 1e6)) {
-  OpenSockets();
+      clock_(config.clock_drift_ppm, ToUs(config.uptime_s)),
+      faults_(config.network_faults, seed) {
+  is_on_ = HasPower(0);
+  if (is_on_) OpenSockets();
   timer_ = runtime_.Every(kTick_us, [this] { Tick(); });
 }
 
 EmulatedSensor::~EmulatedSensor() {
   runtime_.Cancel(timer_);
+  if (flush_due_us_) runtime_.Cancel(flush_timer_);
+}
+
+EmulatedSensorCounts EmulatedSensor::counts() const {
+  EmulatedSensorCounts counts = counts_;
+  const core::PacketFaults::Counts& faults = faults_.counts();
+  counts.lost = faults.lost;
+  counts.duplicates = faults.duplicates;
+  counts.reordered = faults.reordered;
+  counts.control_lost = faults.control_lost;
+  counts.under_way = static_cast<std::int64_t>(faults_.size());
+  return counts;
+}
+
+bool EmulatedSensor::HasPower(std::int64_t now_us) const {
+  return !AnyHolds(config_.power_cuts, now_us);
 }
 
 void EmulatedSensor::OpenSockets() {
+  CloseSockets();
+  bound_ip_ = device_.ip();
   command_socket_ =
-      network_.Open({.bind = {device_.ip(), core::livox::kDevicePort}, .can_broadcast = true},
+      network_.Open({.bind = {bound_ip_, core::livox::kDevicePort}, .can_broadcast = true},
                     [this](std::span<const net::Datagram> datagrams) { OnCommands(datagrams); });
-  data_socket_ = network_.Open({.bind = {device_.ip(), kDataSourcePort}},
-                               [](std::span<const net::Datagram>) {});
+  data_socket_ =
+      network_.Open({.bind = {bound_ip_, kDataSourcePort}}, [](std::span<const net::Datagram>) {});
+}
+
+// Its address may come from a host's command: one that cannot be had must not end the simulator.
+void EmulatedSensor::TryOpenSockets(std::int64_t now_us) {
+  if (now_us < next_try_us_ && bound_ip_ == device_.ip()) return;
+  next_try_us_ = now_us + kRetry_us;
+  try {
+    OpenSockets();
+    problem_.clear();
+  } catch (const net::NetworkError& error) {
+    CloseSockets();
+    if (problem_ != error.what()) process::LogError(config_.sensor + ": " + error.what());
+    problem_ = error.what();
+  }
 }
 
 void EmulatedSensor::CloseSockets() {
@@ -79,66 +137,101 @@ bool EmulatedSensor::IsSilent(Silenced what, std::int64_t now_us) const {
   });
 }
 
-double EmulatedSensor::NextRandom() {
-  const std::uint64_t bits = core::SplitMix64(core::SplitMix64(seed_) ^ num_random_++);
-  return static_cast<double>(bits >> 11U) * 0x1.0p-53;
-}
-
 void EmulatedSensor::Tick() {
   const std::int64_t now_us = Now();
+  MeasureUtime();
+  FollowPower(now_us);
   FollowSchedule(now_us);
   if (!is_on_) return;
-  SendControl(device_.Advance(now_us), now_us);
-  if (device_.started_us() != last_start_us_) {  // A reboot.
-    last_start_us_ = device_.started_us();
-    clock_.Restart(last_start_us_);
-    next_oscillator_ns_ = -1;
-  }
+  const auto outgoing = device_.Advance(now_us);
+  FollowRestart();
+  if (!command_socket_ || !data_socket_ || bound_ip_ != device_.ip()) TryOpenSockets(now_us);
+  SendControl(outgoing, now_us);
   SendPackets(now_us);
+  Flush();
 }
 
-// Power, clock, address and status, as the configuration has them at this moment.
-void EmulatedSensor::FollowSchedule(std::int64_t now_us) {
-  const bool has_power = std::none_of(config_.power_cuts.begin(),
-                                      config_.power_cuts.end(),
-                                      [&](const auto& cut) { return cut.times.Hold(now_us); });
-  if (is_on_ && !has_power) CloseSockets();
+// The time of day may be slewed. A reading that was interrupted is worse than an old one.
+void EmulatedSensor::MeasureUtime() {
+  const std::int64_t before_us = Now();
+  const std::int64_t utime = runtime_.UtimeNow();
+  const std::int64_t after_us = Now();
+  if (after_us - before_us > kSlowReading_us) return;
+  utime_minus_true_us_ = utime - before_us - (after_us - before_us) / 2;
+}
+
+void EmulatedSensor::FollowPower(std::int64_t now_us) {
+  const bool has_power = HasPower(now_us);
+  if (is_on_ && !has_power) {
+    CloseSockets();
+    faults_.DropAll();
+    problem_.clear();
+  }
   if (!is_on_ && has_power) {
     device_.PowerCycle(now_us);
-    OpenSockets();
+    next_try_us_ = now_us;
   }
   is_on_ = has_power;
-  const auto is_due = [now_us](double at_s) { return static_cast<double>(now_us) >= at_s * 1e6; };
+}
+
+// A restart begins the clock anew.
+void EmulatedSensor::FollowRestart() {
+  if (device_.started_us() == last_start_us_) return;
+  last_start_us_ = device_.started_us();
+  clock_.Restart(last_start_us_);
+  next_oscillator_ns_ = -1;
+}
+
+// Clock, address and status, as the configuration has them at this moment.
+void EmulatedSensor::FollowSchedule(std::int64_t now_us) {
+  FollowRestart();
   while (num_clock_steps_ < config_.clock_steps.size() &&
-         is_due(config_.clock_steps[num_clock_steps_].at_s)) {
-    clock_.Step(static_cast<std::int64_t>(config_.clock_steps[num_clock_steps_].step_s * 1e6));
-    ++num_clock_steps_;
+         now_us >= ToUs(config_.clock_steps[num_clock_steps_].at_s)) {
+    const core::ClockStepConfig& step = config_.clock_steps[num_clock_steps_++];
+    if (step.reset) {
+      clock_.ResetStamps(now_us);
+    } else {
+      clock_.Step(ToUs(step.step_s));
+    }
   }
   while (num_address_changes_ < config_.address_changes.size() &&
-         is_due(config_.address_changes[num_address_changes_].at_s)) {
-    device_.ChangeAddress(*core::ParseIpv4(config_.address_changes[num_address_changes_].ip),
-                          now_us);
-    ++num_address_changes_;
-    if (!is_on_) continue;
-    CloseSockets();
-    OpenSockets();
+         now_us >= ToUs(config_.address_changes[num_address_changes_].at_s)) {
+    const std::string& ip = config_.address_changes[num_address_changes_++].ip;
+    device_.ChangeAddress(*core::ParseIpv4(ip), now_us);
   }
+  device_.SetStatus(StatusAt(now_us));
+}
+
+core::EmulatedTimeSync EmulatedSensor::SyncAt(std::int64_t now_us) const {
+  if (AnyHolds(config_.time_sync_losses, now_us)) return {};
+  return {.source = config_.time_sync, .error_us = config_.time_sync_error_us};
+}
+
+core::livox::DeviceStatus EmulatedSensor::StatusAt(std::int64_t now_us) const {
+  using core::livox::TimestampType;
   core::livox::DeviceStatus status;
+  const TimestampType source = SyncAt(now_us).source;
+  status.ptp_present = source == TimestampType::kPtp;
+  status.pps_present = source == TimestampType::kGps || source == TimestampType::kPps;
+  if (source == TimestampType::kPtp) status.time_sync = core::livox::TimeSync::kPtp;
+  if (source == TimestampType::kGps) status.time_sync = core::livox::TimeSync::kGps;
+  if (source == TimestampType::kPps) status.time_sync = core::livox::TimeSync::kPps;
   for (const core::StatusFaultConfig& fault : config_.status_faults) {
-    if (fault.times.Hold(now_us)) status = fault.Status();
+    if (fault.times.Hold(now_us)) status = fault.AddTo(status);
   }
-  device_.SetStatus(status);
+  return status;
 }
 
 void EmulatedSensor::OnCommands(std::span<const net::Datagram> datagrams) {
   const std::int64_t now_us = Now();
   for (const net::Datagram& datagram : datagrams) {
-    if (IsSilent(Silenced::kAll, now_us)) continue;
+    if (IsSilent(Silenced::kAll, now_us) || faults_.LosesControl(now_us)) continue;
     const auto utc_before = device_.utc();
-    SendControl(device_.Receive(datagram.from, datagram.bytes, now_us), now_us);
+    const auto answers = device_.Receive(datagram.from, datagram.bytes, now_us);
     const auto& utc = device_.utc();
     const bool is_told = utc && (!utc_before || utc_before->told_us != utc->told_us);
     if (is_told) clock_.SetUtc(utc->utc_ns, utc->told_us);
+    SendControl(answers, now_us);
   }
 }
 
@@ -147,6 +240,7 @@ void EmulatedSensor::SendControl(const std::vector<EmulatedMid70::Outgoing>& out
   for (const EmulatedMid70::Outgoing& out : outgoing) {
     const bool is_heartbeat = out.code == core::livox::CommandCode::kHeartbeat;
     if (IsSilent(is_heartbeat ? Silenced::kHeartbeats : Silenced::kAll, now_us)) continue;
+    if (!command_socket_ || faults_.LosesControl(now_us)) continue;
     command_socket_->Send(out.to, out.bytes);
   }
 }
@@ -159,94 +253,67 @@ void EmulatedSensor::SendPackets(std::int64_t now_us) {
   }
   const auto shots =
       static_cast<std::int64_t>(core::livox::LayoutOf(sampling->data_type).shots_in_packet);
-  const std::int64_t duration_us = shots * kShotPeriod_us;
+  const std::int64_t duration_ns = shots * kShotPeriod_us * kNsPerUs;
   if (next_oscillator_ns_ < 0) {
     // The pattern goes on with the oscillator, whether or not anybody listens.
-    const std::int64_t shot = clock_.OscillatorNs(now_us) / (kShotPeriod_us * kNsPerUs);
-    next_oscillator_ns_ = shot * kShotPeriod_us * kNsPerUs;
+    const std::int64_t packet = clock_.OscillatorNs(now_us) / duration_ns;
+    next_oscillator_ns_ = (packet + 1) * duration_ns;
   }
-  while (true) {
+  while (clock_.TrueUs(next_oscillator_ns_ + duration_ns) <= now_us) {
     const std::int64_t begin_us = clock_.TrueUs(next_oscillator_ns_);
-    if (begin_us + duration_us > now_us) break;
     if (begin_us < now_us - kLongestLag_us) {
       ++counts_.skipped;
     } else {
-      MakePacket(*sampling, begin_us);
+      MakePacket(*sampling, begin_us, now_us);
     }
-    next_oscillator_ns_ += duration_us * kNsPerUs;
+    next_oscillator_ns_ += duration_ns;
   }
 }
 
-void EmulatedSensor::MakePacket(const EmulatedMid70::Sampling& sampling, std::int64_t begin_us) {
+void EmulatedSensor::MakePacket(const EmulatedMid70::Sampling& sampling,
+                                std::int64_t begin_us,
+                                std::int64_t now_us) {
   const core::livox::DataLayout layout = core::livox::LayoutOf(sampling.data_type);
   shots_.assign(layout.shots_in_packet, {});
   const std::int64_t first_shot = next_oscillator_ns_ / (kShotPeriod_us * kNsPerUs);
   fire_(first_shot, begin_us, device_.memory().return_mode, shots_);
+  ++counts_.packets;
+  if (IsSilent(Silenced::kData, begin_us)) {
+    ++counts_.silenced;
+    return;
+  }
   points_.clear();
   for (const core::SimulatedShot& shot : shots_) {
     for (std::size_t echo = 0; echo < layout.echoes; ++echo) {
       points_.push_back(shot.echoes[echo].point_sensor);
     }
   }
-  const core::EmulatedTimeSync sync{.source = config_.time_sync,
-                                    .error_us = config_.time_sync_error_us};
   const core::EmulatedClock::Stamp stamp =
-      clock_.StampAt(next_oscillator_ns_, sync, utime_minus_true_us_);
-  ++counts_.packets;
-  SendData(sampling.to,
-           core::livox::PackPacket({.slot_id = device_.memory().slot,
-                                    .lidar_id = 1,
-                                    .status_code = device_.status_code(),
-                                    .timestamp_type = stamp.type,
-                                    .data_type = sampling.data_type,
-                                    .timestamp = stamp.timestamp},
-                                   points_),
-           begin_us);
+      clock_.StampAt(next_oscillator_ns_, SyncAt(begin_us), utime_minus_true_us_);
+  const core::livox::DataHeader header{.slot_id = device_.memory().slot,
+                                       .lidar_id = 1,
+                                       .status_code = device_.status_code(),
+                                       .timestamp_type = stamp.type,
+                                       .data_type = sampling.data_type,
+                                       .timestamp = stamp.timestamp};
+  faults_.Put({sampling.to, core::livox::PackPacket(header, points_)}, now_us);
 }
 
-void EmulatedSensor::SendData(const Endpoint& to, core::livox::Bytes packet, std::int64_t now_us) {
-  if (IsSilent(Silenced::kData, now_us)) {
-    ++counts_.silenced;
-    return;
+// What is due leaves now; what is held back has a timer of its own, since a tick is too coarse.
+void EmulatedSensor::Flush() {
+  const std::int64_t now_us = Now();
+  while (const std::optional<core::PacketFaults::Packet> packet = faults_.Take(now_us)) {
+    const bool is_sent = data_socket_ && data_socket_->Send(packet->to, packet->bytes);
+    if (!is_sent) ++counts_.refused;
   }
-  const auto fault = std::find_if(config_.network_faults.begin(),
-                                  config_.network_faults.end(),
-                                  [&](const auto& each) { return each.times.Hold(now_us); });
-  if (fault == config_.network_faults.end()) {
-    Deliver(to, std::move(packet), 0);
-    return;
-  }
-  if (NextRandom() < fault->loss) {
-    ++counts_.lost;
-    return;
-  }
-  std::int64_t delay_us = 0;
-  if (fault->jitter_us > 0) {
-    delay_us = static_cast<std::int64_t>(NextRandom() * static_cast<double>(fault->jitter_us));
-    const std::int64_t due_us = std::max(last_due_us_, Now() + delay_us);
-    last_due_us_ = due_us;
-    delay_us = due_us - Now();
-  }
-  if (NextRandom() < fault->reorder) {
-    ++counts_.reordered;
-    delay_us += fault->reorder_us;
-  }
-  if (NextRandom() < fault->duplicates) {
-    ++counts_.duplicates;
-    Deliver(to, packet, delay_us + kTick_us);
-  }
-  Deliver(to, std::move(packet), delay_us);
-}
-
-void EmulatedSensor::Deliver(const Endpoint& to, core::livox::Bytes packet, std::int64_t delay_us) {
-  if (delay_us <= 0) {
-    if (data_socket_) data_socket_->Send(to, packet);
-    return;
-  }
-  runtime_.After(delay_us,
-                 [this, to, bytes = std::move(packet), alive = std::weak_ptr<int>(alive_)] {
-                   if (alive.lock() && data_socket_) data_socket_->Send(to, bytes);
-                 });
+  const std::optional<std::int64_t> due_us = faults_.NextDue();
+  if (!due_us || (flush_due_us_ && *flush_due_us_ <= *due_us)) return;
+  if (flush_due_us_) runtime_.Cancel(flush_timer_);
+  flush_due_us_ = due_us;
+  flush_timer_ = runtime_.After(*due_us - now_us, [this] {
+    flush_due_us_.reset();
+    Flush();
+  });
 }
 
 }  // namespace clearway

@@ -10,134 +10,9 @@
 #include "common/core/endpoint.hpp"
 #include "common/core/livox/commands.hpp"
 #include "common/core/livox/data_packet.hpp"
-#include "common/core/livox/device_status.hpp"
-#include "common/core/simulation/injected_errors.hpp"
+#include "common/core/simulation/emulated_sensor_faults.hpp"
 
 namespace clearway::core {
-
-/// A bad network between a sensor and its host, for data packets. XML element:
-/// <simulator><mid70><network_fault>.
-struct NetworkFaultConfig {
-  ErrorTimes times;
-  double loss = 0.0;
-  double duplicates = 0.0;
-  double reorder = 0.0;
-  std::int64_t reorder_us = 3'000;
-  std::int64_t jitter_us = 0;
-
-  template <typename Self, typename Visitor>
-  static void Visit(Self& self, Visitor& visitor) {
-    ErrorTimes::Visit(self.times, visitor);
-    visitor.Number("loss", self.loss, 0.0, 1.0, "Share of the packets that never arrive.");
-    visitor.Number("duplicates", self.duplicates, 0.0, 1.0, "Share that arrives twice.");
-    visitor.Number("reorder", self.reorder, 0.0, 1.0, "Share that others overtake.");
-    visitor.Milliseconds(
-        "reorder_ms", self.reorder_us, 0.001, 1000.0, "How much later those arrive [ms].");
-    visitor.Milliseconds("jitter_ms",
-                         self.jitter_us,
-                         0.0,
-                         1000.0,
-                         "Each packet is late by something between 0 and this, in order [ms].");
-  }
-  [[nodiscard]] std::vector<std::string> Validate() const { return times.Validate(); }
-};
-
-/// What a sensor does not say.
-enum class Silenced : std::uint8_t { kAll, kData, kHeartbeats };
-inline constexpr std::array<std::pair<const char*, Silenced>, 3> kSilencedNames{
-    {{"all", Silenced::kAll}, {"data", Silenced::kData}, {"heartbeats", Silenced::kHeartbeats}}};
-
-/// A sensor that is not heard. XML element: <simulator><mid70><silence>.
-struct SilenceConfig {
-  ErrorTimes times;
-  Silenced what = Silenced::kAll;
-
-  template <typename Self, typename Visitor>
-  static void Visit(Self& self, Visitor& visitor) {
-    ErrorTimes::Visit(self.times, visitor);
-    visitor.Choice("what",
-                   self.what,
-                   kSilencedNames,
-                   "\"all\": as with the cable pulled; \"data\": no points; \"heartbeats\": no "
-                   "answers to them.");
-  }
-  [[nodiscard]] std::vector<std::string> Validate() const { return times.Validate(); }
-};
-
-/// A sensor without power. XML element: <simulator><mid70><power_cut>.
-struct PowerCutConfig {
-  ErrorTimes times;
-
-  template <typename Self, typename Visitor>
-  static void Visit(Self& self, Visitor& visitor) {
-    ErrorTimes::Visit(self.times, visitor);
-  }
-  [[nodiscard]] std::vector<std::string> Validate() const { return times.Validate(); }
-};
-
-/// A jump of a sensor's own clock. XML element: <simulator><mid70><clock_step>.
-struct ClockStepConfig {
-  double at_s = 0.0;
-  double step_s = 1.0;
-
-  template <typename Self, typename Visitor>
-  static void Visit(Self& self, Visitor& visitor) {
-    visitor.Number("at_s", self.at_s, 0.0, 86400.0, "When, after the simulator's start [s].");
-    visitor.Number("step_s", self.step_s, -86400.0, 86400.0, "By how much [s].");
-  }
-};
-
-/// A sensor that gets another address. XML element: <simulator><mid70><address_change>.
-struct AddressChangeConfig {
-  double at_s = 0.0;
-  std::string ip = "127.0.0.3";
-
-  template <typename Self, typename Visitor>
-  static void Visit(Self& self, Visitor& visitor) {
-    visitor.Number("at_s", self.at_s, 0.0, 86400.0, "When, after the simulator's start [s].");
-    visitor.Text("ip", self.ip, "Its new address.");
-  }
-  [[nodiscard]] std::vector<std::string> Validate() const {
-    if (ParseIpv4(ip)) return {};
-    return {"ip \"" + ip + "\" is not an address like 192.168.1.101"};
-  }
-};
-
-inline constexpr std::array<std::pair<const char*, livox::Severity>, 3> kSeverityNames{
-    {{"ok", livox::Severity::kOk},
-     {"warning", livox::Severity::kWarning},
-     {"error", livox::Severity::kError}}};
-
-/// What a sensor reports of itself. XML element: <simulator><mid70><status_fault>.
-struct StatusFaultConfig {
-  ErrorTimes times;
-  livox::Severity temperature = livox::Severity::kOk;
-  livox::Severity voltage = livox::Severity::kOk;
-  livox::Severity motor = livox::Severity::kOk;
-  livox::Severity window = livox::Severity::kOk;
-
-  template <typename Self, typename Visitor>
-  static void Visit(Self& self, Visitor& visitor) {
-    ErrorTimes::Visit(self.times, visitor);
-    visitor.Choice("temperature", self.temperature, kSeverityNames, "Too hot or too cold.");
-    visitor.Choice("voltage", self.voltage, kSeverityNames, "Its supply.");
-    visitor.Choice("motor", self.motor, kSeverityNames, "That turns its prisms.");
-    visitor.Choice("window", self.window, kSeverityNames, "Dirty or covered.");
-  }
-  [[nodiscard]] std::vector<std::string> Validate() const { return times.Validate(); }
-
-  [[nodiscard]] livox::DeviceStatus Status() const {
-    livox::DeviceStatus status;
-    status.temperature = temperature;
-    status.voltage = voltage;
-    status.motor = motor;
-    status.window = window;
-    for (const livox::Severity part : {temperature, voltage, motor, window}) {
-      if (part > status.system) status.system = part;
-    }
-    return status;
-  }
-};
 
 inline constexpr std::array<std::pair<const char*, livox::TimestampType>, 4> kTimeSyncNames{
     {{"none", livox::TimestampType::kNoSync},
@@ -151,6 +26,7 @@ struct EmulatedSensorConfig {
   std::string broadcast_code = "3GGDJ6K00100101";
   std::string ip = "127.0.0.2";
   std::string broadcast_to = "127.0.0.1";
+  int broadcast_port = livox::kBroadcastPort;
   std::int64_t boot_us = 200'000;
   std::int64_t start_up_us = 1'000'000;
   std::int64_t host_timeout_us = 5'000'000;
@@ -165,17 +41,21 @@ struct EmulatedSensorConfig {
   std::vector<ClockStepConfig> clock_steps;
   std::vector<AddressChangeConfig> address_changes;
   std::vector<StatusFaultConfig> status_faults;
+  std::vector<TimeSyncLossConfig> time_sync_losses;
 
   template <typename Self, typename Visitor>
   static void Visit(Self& self, Visitor& visitor) {
     VisitIdentity(self, visitor);
     VisitTime(self, visitor);
-    visitor.List("network_fault", self.network_faults, "A bad network for its points.");
+    visitor.List("network_fault", self.network_faults, "A bad network between it and its host.");
     visitor.List("silence", self.silences, "It is not heard.");
     visitor.List("power_cut", self.power_cuts, "It is switched off, and on again.");
     visitor.List("clock_step", self.clock_steps, "Its clock jumps.");
     visitor.List("address_change", self.address_changes, "It gets another address.");
     visitor.List("status_fault", self.status_faults, "It finds something wrong with itself.");
+    visitor.List("time_sync_loss",
+                 self.time_sync_losses,
+                 "It does not hear its source of time: its own clock again.");
   }
 
   [[nodiscard]] std::vector<std::string> Validate() const {
@@ -202,6 +82,8 @@ struct EmulatedSensorConfig {
     visitor.Text("broadcast_to",
                  self.broadcast_to,
                  "Where it announces itself: 255.255.255.255 as real ones do, or one host.");
+    visitor.Integer(
+        "broadcast_port", self.broadcast_port, 1, 65535, "To which port; real ones use 55000.");
     visitor.Milliseconds(
         "boot_ms", self.boot_us, 0.0, 60000.0, "From power on to its first broadcast [ms].");
     visitor.Milliseconds(
