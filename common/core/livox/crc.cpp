@@ -22,6 +22,7 @@ std::uint16_t Crc16(ByteView bytes) {
 
 std::uint32_t Crc32(ByteView bytes) {
   constexpr uLong kSeed = 0x564F580A;
+  if (bytes.empty()) return static_cast<std::uint32_t>(kSeed);  // zlib answers 0 to a null pointer.
   return static_cast<std::uint32_t>(crc32_z(
       kSeed, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<z_size_t>(bytes.size())));
 }
