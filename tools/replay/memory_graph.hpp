@@ -10,8 +10,10 @@
 #include "common/core/mapping/occupancy_grid.hpp"
 #include "common/graph/graph_config.hpp"
 #include "common/messages/channels.hpp"
+#include "common/net/memory_network.hpp"
 #include "common/process/node.hpp"
 #include "common/process/simulated_runtime.hpp"
+#include "processes/simulator/simulator_process.hpp"
 
 namespace clearway::replay {
 
@@ -22,6 +24,7 @@ struct GraphParts {
   bool preprocessor = true;
   bool clusterer = true;
   bool stop_guard = true;
+  bool livox_driver = true;  ///< When there is a simulator for it.
 };
 
 struct MemoryGraphSettings {
@@ -30,11 +33,14 @@ struct MemoryGraphSettings {
   std::string config_digest = {};               ///< Likewise.
   std::optional<core::OccupancyGrid> map = {};  ///< What the map server serves; nothing: no server.
   GraphParts parts = {};
+  /// What is simulated; nothing: no simulator and no driver.
+  std::optional<SimulatorProcess::Setting> simulation = {};
 };
 
 /// The process objects of a graph, each with its own node, on one in-memory bus in virtual time:
-/// what the programs of a live graph are, in a fixed order and without threads. Same
-/// configuration, same messages in: same messages out, byte for byte.
+/// what the programs of a live graph are, in a fixed order and without threads. A simulator's
+/// sensors and the driver talk over a network in memory. Same configuration, same messages in: same
+/// messages out, byte for byte.
 class MemoryGraph {
  public:
   /// Makes the processes. Their first messages are delivered when virtual time runs, so that a tap
@@ -55,8 +61,12 @@ class MemoryGraph {
   template <typename Process, typename... Arguments>
   void AddProcess(Arguments&&... arguments);
 
+  void AddSimulation(const graph::GraphConfig& config);
+
   process::SimulatedRuntime runtime_;
   MemoryGraphSettings settings_;
+  net::MemoryWire wire_;
+  std::vector<std::unique_ptr<net::MemoryHost>> hosts_;
   std::vector<std::unique_ptr<process::Node>> nodes_;
   std::vector<std::shared_ptr<void>> processes_;
 };

@@ -57,14 +57,6 @@ class Listener {
   bool is_input_ = false;
 };
 
-// In virtual time handlers take none: what would be a duration says nothing.
-run_graph::RunSummary WithoutDurations(run_graph::RunSummary summary) {
-  for (auto& [name, stage] : summary.stages) stage.processing_ms.reset();
-  summary.scan_to_detections_ms.reset();
-  summary.slice_to_permit_ms.reset();
-  return summary;
-}
-
 constexpr const char* kProcesses[] = {"map_server",
                                       "pose_source",
                                       "preprocessor",
@@ -73,7 +65,7 @@ constexpr const char* kProcesses[] = {"map_server",
 
 ReplayResult ResultOf(Listener& listener, const LogInputs& inputs) {
   ReplayResult result;
-  result.summary = WithoutDurations(listener.statistics.Summarise());
+  result.summary = run_graph::WithoutDurations(listener.statistics.Summarise());
   result.inputs = inputs.counts();
   result.channels = inputs.ChannelsSeen();
   for (const char* const process : kProcesses) {

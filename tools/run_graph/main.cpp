@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include "common/graph/options.hpp"
 #include "common/graph/output_files.hpp"
 #include "common/process/log.hpp"
+#include "tools/replay/batch.hpp"
 #include "tools/run_graph/graph_run.hpp"
 #include "tools/run_graph/picture.hpp"
 #include "tools/run_graph/report.hpp"
@@ -31,6 +33,8 @@ struct Arguments {
   fs::path map;
   std::optional<double> stop_after_s;
   bool headless = false;
+  bool batch = false;
+  bool without_graph = false;
 };
 
 void AddArguments(CLI::App& app, Arguments& arguments) {
@@ -54,6 +58,12 @@ void AddArguments(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(0.001, 1e6))
       ->type_name("SECONDS");
   app.add_flag("--headless", arguments.headless, "No progress line");
+  CLI::Option* const batch = app.add_flag(
+      "--batch",
+      arguments.batch,
+      "Simulate in memory and virtual time, as fast as it goes; same seed, same messages");
+  app.add_flag("--without-graph", arguments.without_graph, "Simulator and driver alone")
+      ->needs(batch);
 }
 
 fs::path ProgramFolder() {
@@ -198,16 +208,55 @@ int RunAndReport(const Arguments& arguments, const graph::GraphConfig& config) {
   return graph::kExitFailure;
 }
 
+int RunBatchAndReport(const Arguments& arguments, const graph::GraphConfig& config) {
+  if (KindOf(arguments.input, config) != InputKind::kSimulated) {
+    throw std::runtime_error(
+        "--batch simulates: it needs a scene (.xml) and a vehicle that is not "
+        "stationary");
+  }
+  graph::RefuseToOverwrite({arguments.log, arguments.json},
+                           {arguments.input, arguments.map, arguments.common.config_path});
+  const bool shows_progress = !arguments.headless && isatty(STDERR_FILENO) != 0;
+  const auto begin = std::chrono::steady_clock::now();
+  const auto wall_s = [begin] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  replay::BatchSettings settings{.duration_s = arguments.stop_after_s.value_or(kSimulated_s),
+                                 .with_graph = !arguments.without_graph,
+                                 .log = arguments.log,
+                                 .channel_prefix = arguments.common.channel_prefix,
+                                 .version = CLEARWAY_VERSION};
+  if (shows_progress) {
+    settings.on_progress = [&](double done_s) {
+      std::fprintf(stderr, "\rsimulated %.1f s, %.1f times real time ", done_s, done_s / wall_s());
+    };
+  }
+  const RunSummary summary = replay::RunBatch(config, settings);
+  const double took_s = wall_s();
+  if (shows_progress) std::fputc('\n', stderr);
+  std::fputs(FormatTable(summary, std::nullopt).c_str(), stdout);
+  std::printf("\n%-24s %8.1f\n", "times real time", settings.duration_s / took_s);
+  if (!arguments.json.empty()) {
+    graph::WriteFile(arguments.json, FormatJson(summary, std::nullopt));
+  }
+  return graph::kExitOk;
+}
+
 int Main(int argc, char** argv) {
   CLI::App app("Starts the whole graph over LCM, plays an input through it and sums up",
                "clearway-run");
   Arguments arguments;
   AddArguments(app, arguments);
   return graph::GuardedMain(app, arguments.common, argc, argv, [&] {
+    // What the processes say in virtual time is in the log's statuses.
+    if (arguments.batch && app.get_option("--log-level")->empty()) {
+      process::SetUpLog(app.get_name(), "warn");
+    }
     FillIn(arguments);
     const auto config = graph::LoadConfig(arguments.common);
     if (graph::AnsweredByConfig(arguments.common, config)) return graph::kExitOk;
-    return RunAndReport(arguments, config.root);
+    return arguments.batch ? RunBatchAndReport(arguments, config.root)
+                           : RunAndReport(arguments, config.root);
   });
 }
 

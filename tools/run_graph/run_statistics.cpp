@@ -39,6 +39,13 @@ std::optional<Quantiles> QuantilesOf(std::vector<double> values) {
   return Quantiles{at(0.5), at(0.99)};
 }
 
+RunSummary WithoutDurations(RunSummary summary) {
+  for (auto& [name, stage] : summary.stages) stage.processing_ms.reset();
+  summary.scan_to_detections_ms.reset();
+  summary.slice_to_permit_ms.reset();
+  return summary;
+}
+
 ScanRecord& RunStatistics::Record(ScanKey key) {
   ScanRecord& record = recent_[key];
   if (recent_.size() > kRecentScans && recent_.begin()->first != key) {

@@ -73,6 +73,9 @@ struct RunSummary {
   std::optional<DriveSummary> drive;
 };
 
+/// In virtual time handlers take none: what would be a duration says nothing, and is left out.
+[[nodiscard]] RunSummary WithoutDurations(RunSummary summary);
+
 /// Listens to all messages of a graph and sums up. Arrival times are on one monotonic clock.
 class RunStatistics {
  public:
@@ -86,8 +89,8 @@ class RunStatistics {
   void OnDrivePermit(const drive_permit_t& message, std::int64_t arrival_us);
   void OnStatus(const status_t& message);
 
-  /// The same by the channel's name, without prefix; other channels, and what cannot be decoded, are
-  /// left out.
+  /// The same by the channel's name, without prefix; other channels, and what cannot be decoded,
+  /// are left out.
   void OnMessage(const std::string& channel,
                  std::span<const std::byte> bytes,
                  std::int64_t arrival_us);
