@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "processes/simulator/simulator_process.hpp"
 
+#include <algorithm>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -30,8 +31,7 @@ SimulatorProcess::SimulatorProcess(const core::SimulatorConfig& config,
       node_(node),
       clock_(node.runtime()),
       world_(setting_.scene, setting_.walls),
-      tally_(core::DescribeObjects(setting_.scene).size(),
-             {.period_us = setting_.scan_period_us, .first_begin_us = -clock_.UtimeOf(0)}),
+      tally_(core::DescribeObjects(setting_.scene).size(), {.period_us = setting_.scan_period_us}),
       base_(config.robot,
             vehicle,
             setting_.scene,
@@ -63,7 +63,9 @@ void SimulatorProcess::AddSensor(std::size_t index,
       vehicle.sensors[static_cast<std::size_t>(*mounted)].T_vehicle_sensor(),
       world_,
       base_,
-      tally_));
+      tally_,
+      setting_.scan_period_us,
+      clock_));
   // A sensor's time starts with it, a moment after the world's.
   const std::int64_t start_us = clock_.Now();
   sensors_.push_back(std::make_unique<EmulatedSensor>(
@@ -99,10 +101,10 @@ void SimulatorProcess::PublishTruth(std::int64_t scan_id) {
   truth.scan_id = scan_id;
   truth.T_map_vehicle = base_.StateAt(end_us).in_map.Transform();
   truth.boxes = core::TruthBoxesAt(setting_.scene, end_us);
-  for (const core::RayTally& rays : tally_.TakeScan(end_us - setting_.scan_period_us)) {
-    truth.rays.push_back(
-        {.points = rays.points,
-         .first_ray_utime = rays.first_ray_us < 0 ? 0 : clock_.UtimeOf(rays.first_ray_us)});
+  if (!sensors_.empty()) {
+    for (const core::RayTally& rays : tally_.TakeScan(scan_id * setting_.scan_period_us)) {
+      truth.rays.push_back({rays.points, std::max<std::int64_t>(0, rays.first_ray_us)});
+    }
   }
   node_.Publish(kTruth, messages::ToTruth(truth));
 }

@@ -16,6 +16,7 @@
 #include "common/messages/pose.hpp"
 #include "common/net/memory_network.hpp"
 #include "common/process/simulated_runtime.hpp"
+#include "processes/livox_driver/livox_driver_process.hpp"
 #include "processes/simulator/simulator_process.hpp"
 
 namespace clearway::test {
@@ -372,6 +373,104 @@ TEST(SimulatedLab, CountsPermitsThatCannotBeDecoded) {
 
   EXPECT_EQ(lab.status_.invalid, 1);
   EXPECT_EQ(lab.odometry_.back().second.v_mps, 0.0);
+}
+
+/// The lab with the driver of its one sensor on the same host.
+struct LabWithDriver {
+  explicit LabWithDriver(const core::SimulatorConfig& config,
+                         const core::SceneConfig& scene = Room())
+      : lab(config, scene),
+        node(lab.runtime_,
+             {.process = "livox_driver", .version = "1", .config_digest = "d"},
+             channels::kLivoxDriverStatus),
+        driver(core::livox::DriverConfig{}, lab.vehicle_, node, lab.host_) {
+    lab.peer_.Subscribe<lidar_points_t>(channels::kLidarPoints,
+                                        [this](const auto& m) { slices.push_back(m); });
+  }
+
+  Lab lab;
+  process::Node node;
+  LivoxDriverProcess driver;
+  std::vector<lidar_points_t> slices;
+};
+
+core::SimulatorConfig WithSensor(core::DriveMode drive) {
+  core::SimulatorConfig config = Config(drive);
+  config.sensors.resize(1);
+  return config;
+}
+
+TEST(SimulatedLab, ItsSensorAndDriverSayTheSameBytesForTheSameSeed) {
+  const auto run = [](int seed) {
+    core::SimulatorConfig config = WithSensor(core::DriveMode::kStraight);
+    config.robot.obey_permit = false;
+    config.seed = seed;
+    LabWithDriver lab(config);
+    lab.lab.RunUntil(4 * kSecond);
+    EXPECT_GT(lab.slices.size(), 100U);
+    return lab.lab.log_;
+  };
+
+  const std::string first = run(1);
+
+  EXPECT_EQ(run(1), first);
+  EXPECT_NE(run(2), first);
+}
+
+// The driver's returns that lie on an object, counted by its box, against TRUTH.
+TEST(SimulatedLab, TruthCountsTheRaysThatTheDriverPublishes) {
+  core::SimulatorConfig config = WithSensor(core::DriveMode::kStill);
+  config.lidar.noise_sigma_m = 0.001;
+  core::SceneConfig scene = Room();
+  scene.persons.clear();
+  LabWithDriver lab(config, scene);
+
+  lab.lab.RunUntil(6 * kSecond);
+
+  std::map<std::int64_t, std::int32_t> points;
+  const Eigen::Isometry3d T_vehicle_sensor = lab.lab.vehicle_.sensors[0].T_vehicle_sensor();
+  for (const lidar_points_t& slice : lab.slices) {
+    std::int32_t& count = points[slice.scan_id];
+    for (std::size_t i = 0; i < static_cast<std::size_t>(slice.n); ++i) {
+      const Eigen::Vector3d p =
+          T_vehicle_sensor * Eigen::Vector3d(slice.x[i], slice.y[i], slice.z[i]);
+      if (std::abs(p.x() - 3.0) < 0.2 && std::abs(p.y()) < 0.2 && p.z() > 0.05) ++count;
+    }
+  }
+  int scans = 0;
+  int of_truth = 0;
+  int of_driver = 0;
+  for (const auto& [time_us, truth] : lab.lab.truths_) {
+    if (time_us < 4 * kSecond) continue;
+    ASSERT_EQ(truth.objects[0].name, "crate");
+    EXPECT_GT(truth.objects[0].points, 20);
+    // The driver's stamps may be off by 1 ms, 100 shots; not all of them hit the crate.
+    EXPECT_NEAR(truth.objects[0].points, points[truth.scan_id], 40) << truth.scan_id;
+    of_truth += truth.objects[0].points;
+    of_driver += points[truth.scan_id];
+    EXPECT_LT(truth.objects[0].first_ray_utime, kStart_utime + 4 * kSecond);
+    EXPECT_GT(truth.objects[0].first_ray_utime, kStart_utime);
+    ++scans;
+  }
+  EXPECT_GE(scans, 18);
+  EXPECT_NEAR(of_truth, of_driver, 40);
+}
+
+TEST(SimulatedLab, SaysThatASensorWaitsForItsDriver) {
+  Lab lab(WithSensor(core::DriveMode::kStill));
+  lab.RunUntil(5 * kSecond);
+
+  EXPECT_EQ(lab.status_.text, "stands; front at 127.0.0.2 waits for a driver");
+  EXPECT_EQ(lab.status_.state, status_t::STATE_WAITING);
+  EXPECT_TRUE(lab.status_.ready);
+
+  LabWithDriver driven(WithSensor(core::DriveMode::kStill));
+  driven.lab.RunUntil(5 * kSecond);
+
+  EXPECT_EQ(driven.lab.status_.text, "stands");
+  EXPECT_EQ(driven.lab.status_.state, status_t::STATE_OK);
+  EXPECT_GT(driven.lab.Counter("packets"), 2000);
+  EXPECT_EQ(driven.lab.Counter("packets_skipped"), 0);
 }
 
 TEST(SimulatedLab, RefusesASensorThatIsNotOnTheVehicle) {
