@@ -88,7 +88,8 @@ void LidarOutput::SetCounters() const {
   set("duplicates", counts.duplicates);
   set("reordered", counts.reordered);
   set("late_packets", counts.late_packets);
-  set("misfits", counts.misfits);
+  set("unfit_packets", counts.unfit_packets);
+  set("pauses", counts.pauses);
   set("shots", counts.shots);
   set("zero_returns", counts.zero_returns);
   set("overflow_points", counts.overflow_points);

@@ -38,7 +38,8 @@ class DelayEnvelope {
 
   /// The line [ns].
   [[nodiscard]] double At(std::int64_t stamp_ns) const {
-    return line_ns_ + slope_ * static_cast<double>(stamp_ns - line_stamp_ns_);
+    return line_ns_ +
+           slope_ * (static_cast<double>(stamp_ns) - static_cast<double>(line_stamp_ns_));
   }
   /// Its slope; 0 until it is known.
   [[nodiscard]] double slope() const { return slope_; }

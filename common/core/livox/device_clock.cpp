@@ -187,7 +187,7 @@ DeviceClock::Reading DeviceClock::Observe(TimestampType type,
   if (HasAbsoluteTime(type) && (!seen.is_device_stamp || (is_settled_ && !believes_))) {
     ++implausible_;
   }
-  reading.utime_ns = ToHost(seen.device_ns);
+  if (reading.is_usable) reading.utime_ns = ToHost(seen.device_ns);
   return reading;
 }
 

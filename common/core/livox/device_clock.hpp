@@ -61,7 +61,8 @@ class DeviceClock {
   explicit DeviceClock(const ClockConfig& config);
 
   struct Reading {
-    std::int64_t utime_ns = 0;     ///< Of the first shot, since the epoch, on the host's clock.
+    std::int64_t utime_ns = 0;     ///< Of the first shot, since the epoch, on the host's clock; 0
+                                   ///< when it is not usable.
     std::uint64_t device_ns = 0;   ///< The stamp as nanoseconds that do not wrap.
     bool is_usable = false;        ///< False: the stamp fits nothing that was seen before.
     bool is_device_stamp = false;  ///< False: taken from arrival; says nothing about gaps.
