@@ -48,3 +48,9 @@ build_preset() (
   [ -f "build/$preset/build.ninja" ] || cmake --preset "$preset" >&2
   cmake --build "build/$preset" --parallel "$(nproc)" --target "${@:-all}" >&2
 )
+
+# test_preset PRESET [CTEST-OPTION...]: runs the tests. A test's PROCESSORS counts half processors,
+# since many a test only waits: tests/CMakeLists.txt says which takes how many.
+test_preset() {
+  ctest --preset "$1" --parallel "$((2 * $(nproc)))" "${@:2}"
+}

@@ -84,6 +84,7 @@ function(clearway_test name)
     set(ARG_TIMEOUT 400)  # Sanitizers on a busy machine; a hang is all that this is for.
   endif()
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}"
+    PROCESSORS 2  # Halves: see tests/CMakeLists.txt.
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     ENVIRONMENT "CLEARWAY_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};CLEARWAY_SOURCE=${PROJECT_SOURCE_DIR}")
 endfunction()
@@ -101,5 +102,5 @@ function(clearway_fuzzer name)
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz/${name})
   add_test(NAME fuzz_${name} COMMAND fuzz_${name} -max_total_time=10 -rss_limit_mb=2048
            ${PROJECT_BINARY_DIR}/fuzz/${name} ${PROJECT_SOURCE_DIR}/tests/data/fuzz/${name})
-  set_tests_properties(fuzz_${name} PROPERTIES TIMEOUT 120 LABELS fuzz)
+  set_tests_properties(fuzz_${name} PROPERTIES TIMEOUT 120 LABELS fuzz PROCESSORS 2)
 endfunction()
