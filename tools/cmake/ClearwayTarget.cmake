@@ -100,7 +100,7 @@ function(clearway_fuzzer name)
   target_link_libraries(fuzz_${name} PRIVATE clearway_options ${ARG_LINK})
   target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz/${name})
-  add_test(NAME fuzz_${name} COMMAND fuzz_${name} -max_total_time=10 -rss_limit_mb=2048
+  add_test(NAME fuzz_${name} COMMAND fuzz_${name} -max_total_time=4 -rss_limit_mb=2048
            ${PROJECT_BINARY_DIR}/fuzz/${name} ${PROJECT_SOURCE_DIR}/tests/data/fuzz/${name})
   set_tests_properties(fuzz_${name} PROPERTIES TIMEOUT 120 LABELS fuzz PROCESSORS 2)
 endfunction()
