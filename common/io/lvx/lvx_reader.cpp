@@ -155,6 +155,14 @@ struct LvxReader::Impl {
     position = size;
   }
 
+  // The file became shorter, or the disk gave up, while it was read.
+  std::nullopt_t Unreadable() {
+    NoteCut(position, "the file cannot be read on from here");
+    in_frame = false;
+    position = size;
+    return std::nullopt;
+  }
+
   [[nodiscard]] bool EndsInFile() const { return stated_end != 0 && stated_end <= size; }
 
   // False at the end of the file.
@@ -166,7 +174,10 @@ struct LvxReader::Impl {
       return false;
     }
     std::array<std::byte, kMaxFrameHeaderBytes> bytes{};
-    ReadAt(position, std::span(bytes).first(sizes.frame_header));
+    if (!ReadAt(position, std::span(bytes).first(sizes.frame_header))) {
+      Unreadable();
+      return false;
+    }
     const auto own = Load<std::uint64_t>(bytes, 0);
     stated_end = Load<std::uint64_t>(bytes, 8);
     if (own != position) {
@@ -215,7 +226,7 @@ struct LvxReader::Impl {
     }
     if (left < lvx::kPackageHeadBytes) return Incomplete(left);
     const std::span<std::byte> head = std::span(package).first(lvx::kPackageHeadBytes);
-    ReadAt(position, head);
+    if (!ReadAt(position, head)) return Unreadable();
     const std::optional<std::size_t> bytes = BytesOf(head);
     if (!bytes) return std::nullopt;
     if (*bytes > left) return Incomplete(left);
@@ -266,8 +277,11 @@ struct LvxReader::Impl {
       ++report.unknown_devices;
       return std::nullopt;
     }
-    ReadAt(byte + lvx::kPackageHeadBytes,
-           std::span(package).subspan(lvx::kPackageHeadBytes, bytes - lvx::kPackageHeadBytes));
+    const std::size_t body = bytes - lvx::kPackageHeadBytes;
+    if (!ReadAt(byte + lvx::kPackageHeadBytes,
+                std::span(package).subspan(lvx::kPackageHeadBytes, body))) {
+      return Unreadable();
+    }
     LvxPackage given{.device_index = index,
                      .number = report.packages++,
                      .frame = report.frames - 1,
