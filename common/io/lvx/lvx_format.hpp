@@ -18,9 +18,9 @@ enum class LvxVersion : std::uint8_t { k1_0, k1_1 };
 
 /// A sensor of a recording.
 struct LvxDevice {
-  std::string lidar_code;  ///< Its broadcast code, at most 16 characters.
-  std::string hub_code;    ///< Of the hub that it hung on; empty without one.
-  std::uint8_t index = 0;  ///< Packages name it by this, not by its place in the list.
+  std::string lidar_code = {};  ///< Its broadcast code, at most 16 characters.
+  std::string hub_code = {};    ///< Of the hub that it hung on; empty without one.
+  std::uint8_t index = 0;       ///< Packages name it by this, not by its place in the list.
   core::livox::DeviceType type = core::livox::DeviceType::kMid70;
   bool extrinsic_enabled = false;  ///< Whether a player should apply what follows.
   float roll_deg = 0.0F;           ///< Rotation as in FromRpy().

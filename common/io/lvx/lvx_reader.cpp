@@ -3,52 +3,20 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cmath>
-#include <fstream>
-#include <limits>
 #include <sstream>
-#include <system_error>
+#include <utility>
+
+#include "common/io/lvx/lvx_float_package.hpp"
+#include "common/io/lvx/lvx_source.hpp"
 
 namespace clearway::io {
 namespace {
 
 using core::livox::ByteView;
 using core::livox::Load;
-using core::livox::Point;
-using core::livox::WirePoint;
 
 constexpr std::size_t kMaxFrameHeaderBytes = 32;
-constexpr std::size_t kScanBytes = 65536;
 constexpr std::uint8_t kPacketVersion = 5;
-
-std::unique_ptr<std::istream> Open(const std::filesystem::path& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw ErrorInFile(path.string(), "no such file");
-  if (!std::filesystem::is_regular_file(status)) throw ErrorInFile(path.string(), "is not a file");
-  errno = 0;
-  auto stream = std::make_unique<std::ifstream>(path, std::ios::binary);
-  if (!*stream) {
-    throw ErrorInFile(path.string(), "cannot be read: " + std::generic_category().message(errno));
-  }
-  return stream;
-}
-
-// A coordinate as the wire has it. What the wire cannot say is no return.
-std::optional<std::int32_t> Millimetres(float metres) {
-  const double mm = std::round(static_cast<double>(metres) * 1000.0);
-  if (!(std::abs(mm) <= std::numeric_limits<std::int32_t>::max())) return std::nullopt;
-  return static_cast<std::int32_t>(mm);
-}
-
-WirePoint ToWire(const Point& point) {
-  const auto x = Millimetres(point.x_m);
-  const auto y = Millimetres(point.y_m);
-  const auto z = Millimetres(point.z_m);
-  if (!x || !y || !z) return {};
-  return {.x_mm = *x, .y_mm = *y, .z_mm = *z, .reflectivity = point.reflectivity};
-}
 
 std::string Text(std::uint64_t number) {
   return std::to_string(number);
@@ -57,11 +25,10 @@ std::string Text(std::uint64_t number) {
 }  // namespace
 
 struct LvxReader::Impl {
-  std::unique_ptr<std::istream> stream;
+  lvx::Source source;
   std::string file;
   std::uint64_t size = 0;
-  std::uint64_t position = 0;         // Of what is read next.
-  std::uint64_t stream_position = 0;  // Where the stream stands.
+  std::uint64_t position = 0;  // Of what is read next.
   LvxHeader header;
   lvx::Sizes sizes;
   LvxReport report;
@@ -74,30 +41,17 @@ struct LvxReader::Impl {
   std::uint64_t packages_met = 0;     // Of this frame, of any kind.
 
   std::array<std::byte, lvx::kMaxPackageBytes> package{};
-  core::livox::Bytes converted;
-  std::array<Point, lvx::kFloatPoints> float_points{};
+  lvx::FloatPackage float_package;
 
-  Impl(std::unique_ptr<std::istream> source, std::string name)
-      : stream(std::move(source)), file(std::move(name)) {
-    stream->seekg(0, std::ios::end);
-    size = static_cast<std::uint64_t>(stream->tellg());
-    stream_position = size;
+  Impl(std::unique_ptr<std::istream> stream, std::string name)
+      : source(std::move(stream)), file(std::move(name)), size(source.size()) {
     core::livox::Bytes start(
         static_cast<std::size_t>(std::min<std::uint64_t>(size, lvx::kMaxHeaderBytes)));
-    if (!ReadAt(0, start)) throw ErrorInFile(file, "cannot be read");
+    if (!source.ReadAt(0, start)) throw ErrorInFile(file, "cannot be read");
     const lvx::ParsedHeader parsed = lvx::ParseHeader(start, file);
     header = parsed.header;
     sizes = lvx::SizesOf(header.version);
     position = parsed.bytes;
-  }
-
-  bool ReadAt(std::uint64_t offset, std::span<std::byte> bytes) {
-    stream->clear();
-    if (stream_position != offset) stream->seekg(static_cast<std::streamoff>(offset));
-    const auto wanted = static_cast<std::streamsize>(bytes.size());
-    stream->read(reinterpret_cast<char*>(bytes.data()), wanted);
-    stream_position = offset + static_cast<std::uint64_t>(stream->gcount());
-    return stream->gcount() == wanted;
   }
 
   void Note(std::uint64_t byte, const std::string& text) {
@@ -110,40 +64,11 @@ struct LvxReader::Impl {
     report.cut = ErrorAtByte(file, byte, text).what();
   }
 
-  // Whether a frame begins there: it holds its own place, and where it ends there is the file's end
-  // or the next frame.
-  bool IsFrame(std::uint64_t at) {
-    std::array<std::byte, 16> start{};
-    if (at + sizes.frame_header > size || !ReadAt(at, start)) return false;
-    if (Load<std::uint64_t>(start, 0) != at) return false;
-    const auto next = Load<std::uint64_t>(start, 8);
-    if (next == 0 || next >= size) return true;
-    if (next < at + sizes.frame_header) return false;
-    std::array<std::byte, 8> place{};
-    return next + place.size() > size ||
-           (ReadAt(next, place) && Load<std::uint64_t>(place, 0) == next);
-  }
-
-  // The place of the first frame from `at` on, or the end of the file.
-  std::uint64_t FindFrame(std::uint64_t at) {
-    core::livox::Bytes window;
-    while (at + sizes.frame_header <= size) {
-      window.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kScanBytes, size - at)));
-      if (!ReadAt(at, window)) return size;
-      const std::size_t last = window.size() - sizeof(std::uint64_t);
-      for (std::size_t i = 0; i <= last; ++i) {
-        if (Load<std::uint64_t>(window, i) == at + i && IsFrame(at + i)) return at + i;
-      }
-      at += last + 1;
-    }
-    return size;
-  }
-
   void LoseWay(std::uint64_t byte, const std::string& text) {
     Note(byte, text);
     ++report.damages;
     in_frame = false;
-    position = FindFrame(byte + 1);
+    position = source.FindFrame(byte, sizes.frame_header);
     report.lost_bytes += position - byte;
   }
 
@@ -174,7 +99,7 @@ struct LvxReader::Impl {
       return false;
     }
     std::array<std::byte, kMaxFrameHeaderBytes> bytes{};
-    if (!ReadAt(position, std::span(bytes).first(sizes.frame_header))) {
+    if (!source.ReadAt(position, std::span(bytes).first(sizes.frame_header))) {
       Unreadable();
       return false;
     }
@@ -219,14 +144,14 @@ struct LvxReader::Impl {
       EndFrame();
       return std::nullopt;
     }
-    if (!EndsInFile() && IsFrame(position)) {
+    if (!EndsInFile() && source.IsFrame(position, sizes.frame_header)) {
       LoseWay(position,
               "a frame begins inside another one, which ends at byte " + Text(stated_end));
       return std::nullopt;
     }
     if (left < lvx::kPackageHeadBytes) return Incomplete(left);
     const std::span<std::byte> head = std::span(package).first(lvx::kPackageHeadBytes);
-    if (!ReadAt(position, head)) return Unreadable();
+    if (!source.ReadAt(position, head)) return Unreadable();
     const std::optional<std::size_t> bytes = BytesOf(head);
     if (!bytes) return std::nullopt;
     if (*bytes > left) return Incomplete(left);
@@ -278,8 +203,8 @@ struct LvxReader::Impl {
       return std::nullopt;
     }
     const std::size_t body = bytes - lvx::kPackageHeadBytes;
-    if (!ReadAt(byte + lvx::kPackageHeadBytes,
-                std::span(package).subspan(lvx::kPackageHeadBytes, body))) {
+    if (!source.ReadAt(byte + lvx::kPackageHeadBytes,
+                       std::span(package).subspan(lvx::kPackageHeadBytes, body))) {
       return Unreadable();
     }
     LvxPackage given{.device_index = index,
@@ -288,32 +213,12 @@ struct LvxReader::Impl {
                      .byte = byte,
                      .packet = ByteView(package).subspan(1, bytes - 1),
                      .float_points = {}};
-    if (is_float) Convert(given);
-    return given;
-  }
-
-  // Version 1.0: metres in floats become a packet of the wire.
-  void Convert(LvxPackage& given) {
-    std::array<WirePoint, lvx::kFloatPoints> wire{};
-    for (std::size_t i = 0; i < lvx::kFloatPoints; ++i) {
-      const std::size_t at = lvx::kPackageHeadBytes + i * lvx::kFloatPointBytes;
-      float_points[i] = {.x_m = Load<float>(package, at),
-                         .y_m = Load<float>(package, at + 4),
-                         .z_m = Load<float>(package, at + 8),
-                         .reflectivity = Load<std::uint8_t>(package, at + 12)};
-      wire[i] = ToWire(float_points[i]);
+    if (is_float) {
+      float_package = lvx::ConvertFloatPackage(package);
+      given.packet = float_package.packet;
+      given.float_points = float_package.points;
     }
-    const ByteView head = ByteView(package).subspan(1);
-    converted =
-        core::livox::PackPacket({.slot_id = Load<std::uint8_t>(head, 1),
-                                 .lidar_id = Load<std::uint8_t>(head, 2),
-                                 .status_code = Load<std::uint32_t>(head, 4),
-                                 .timestamp_type = static_cast<core::livox::TimestampType>(head[8]),
-                                 .data_type = core::livox::DataType::kCartesian,
-                                 .timestamp = Load<std::uint64_t>(head, 10)},
-                                wire);
-    given.packet = converted;
-    given.float_points = float_points;
+    return given;
   }
 
   [[nodiscard]] const LvxDevice* Find(std::uint8_t index) const {
@@ -325,7 +230,7 @@ struct LvxReader::Impl {
 };
 
 LvxReader::LvxReader(const std::filesystem::path& path)
-    : impl_(std::make_unique<Impl>(Open(path), path.string())) {}
+    : impl_(std::make_unique<Impl>(lvx::OpenFile(path), path.string())) {}
 
 LvxReader::LvxReader(std::string bytes, const std::string& file)
     : impl_(std::make_unique<Impl>(std::make_unique<std::istringstream>(std::move(bytes)), file)) {}
