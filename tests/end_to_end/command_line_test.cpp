@@ -189,10 +189,13 @@ INSTANTIATE_TEST_SUITE_P(Programs,
 class RecordingErrorTest : public testing::Test {
  protected:
   ProgramResult Play(const std::vector<std::string>& arguments) {
-    return RunProgram(
-        With({Program("play"), "--config", ShippedConfig("lab_standing.xml"), "--lcm-url", TestUrl(17401)},
-             arguments),
-        folder_.path());
+    return RunProgram(With({Program("play"),
+                            "--config",
+                            ShippedConfig("lab_standing.xml"),
+                            "--lcm-url",
+                            TestUrl(17401)},
+                           arguments),
+                      folder_.path());
   }
   TestFolder folder_;
 };

@@ -41,9 +41,10 @@ class ReplayProgramTest : public testing::Test {
   }
 
   ProgramResult Replay(const std::filesystem::path& log, const std::vector<std::string>& more) {
-    return RunProgram(With({Program("replay"), log, "--config", ShippedConfig("lab_standing.xml")}, more),
-                      folder_.path(),
-                      120);
+    return RunProgram(
+        With({Program("replay"), log, "--config", ShippedConfig("lab_standing.xml")}, more),
+        folder_.path(),
+        120);
   }
 
   [[nodiscard]] nlohmann::json Figures() const {

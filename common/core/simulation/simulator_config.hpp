@@ -7,6 +7,7 @@
 
 #include "common/core/simulation/emulated_sensor_config.hpp"
 #include "common/core/simulation/lidar_scan.hpp"
+#include "common/core/simulation/render_map.hpp"
 #include "common/core/simulation/robot_config.hpp"
 
 namespace clearway::core {
@@ -18,6 +19,7 @@ struct SimulatorConfig {
   double wall_height_m = 2.5;
   double wall_reflectivity = 0.6;
   int seed = 1;
+  MapErrorConfig map_error;
   RobotConfig robot;
   SimulatedLidarConfig lidar;
   std::vector<EmulatedSensorConfig> sensors = {EmulatedSensorConfig{}};
@@ -35,6 +37,7 @@ struct SimulatorConfig {
     visitor.Number("wall_height_m", self.wall_height_m, 0.05, 100.0, "Of the map's walls [m].");
     visitor.Number("wall_reflectivity", self.wall_reflectivity, 0.0, 1.0, "Of the map's walls.");
     visitor.Integer("seed", self.seed, 0, 2147483647, "Of all that is random.");
+    visitor.Group("map_error", self.map_error, "What --write-map gets wrong.");
     visitor.Group("robot", self.robot, "The robot that carries the sensors.");
     visitor.Group("lidar", self.lidar, "What its sensors can see.");
     visitor.List("mid70", self.sensors, "Sensors that it is, on the network.");

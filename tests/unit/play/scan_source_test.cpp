@@ -11,7 +11,8 @@ namespace clearway::play {
 namespace {
 
 graph::GraphConfig LabConfig() {
-  return config::Load<graph::GraphConfig>(test::SourceFolder() / "config" / "lab_standing.xml").root;
+  return config::Load<graph::GraphConfig>(test::SourceFolder() / "config" / "lab_standing.xml")
+      .root;
 }
 
 TEST(SceneSourceTest, HasAScanForEachPeriodOfTheTimeAsked) {
