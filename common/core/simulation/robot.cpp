@@ -63,9 +63,9 @@ RobotState Robot::StateAt(std::int64_t time_us) {
   return state;
 }
 
-void Robot::OnPermit(const BasePermit& permit, std::int64_t time_us) {
+bool Robot::OnPermit(const BasePermit& permit, std::int64_t time_us) {
   AdvanceTo(time_us);
-  gate_.OnPermit(permit, time_us);
+  return gate_.OnPermit(permit, time_us);
 }
 
 void Robot::OnOrder(const BaseCommand& order, std::int64_t time_us) {
@@ -121,8 +121,9 @@ void Robot::Step() {
 void Robot::LookAround() {
   const RobotState& state = history_[static_cast<std::size_t>(steps_) % kHistory];
   floor_plan_.MoveTo(steps_ * kStep_us);
-  const double within_m = std::max(nearest_.distance_m, touched_ ? kContactEnd_m : 0.0);
-  const FloorPlan::Neighbour now = floor_plan_.Nearest(state.in_map, std::max(within_m, 1e-9));
+  const double least_m = touched_ ? kContactEnd_m : kTouch_m;
+  const double within_m = std::clamp(nearest_.distance_m, least_m, kLookRange_m);
+  const FloorPlan::Neighbour now = floor_plan_.Nearest(state.in_map, within_m);
   if (now.distance_m < nearest_.distance_m) nearest_ = now;
   if (now.distance_m <= 0.0) {
     NoteContact(now.object, std::abs(state.v_mps));

@@ -42,8 +42,8 @@ class Robot {
   /// the oldest state that it has.
   [[nodiscard]] RobotState StateAt(std::int64_t time_us);
 
-  /// A DRIVE_PERMIT arrived at `time_us`.
-  void OnPermit(const BasePermit& permit, std::int64_t time_us);
+  /// A DRIVE_PERMIT arrived at `time_us`; true when it replaces the one held.
+  bool OnPermit(const BasePermit& permit, std::int64_t time_us);
   /// A DRIVE_REQUEST or DRIVE_COMMAND arrived, whichever it obeys.
   void OnOrder(const BaseCommand& order, std::int64_t time_us);
 

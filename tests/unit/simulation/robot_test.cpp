@@ -480,6 +480,24 @@ TEST(Robot, StopsAtAWallOfTheMap) {
   EXPECT_EQ(robot.contacts()[0].object, kMapObject);
 }
 
+TEST(Robot, TellsTheLeastDistanceToTheWallsOfTheMapAlone) {
+  MapWalls walls;
+  walls.grid.geometry = {.width = 400, .height = 100, .origin_x_m = -1.0, .origin_y_m = -2.5};
+  walls.grid.cells.assign(40'000, OccupancyGrid::kFree);
+  for (int column = 200; column < 400; ++column) {
+    walls.grid.cells[walls.grid.geometry.IndexOf({column, 70})] = OccupancyGrid::kOccupied;
+  }
+  Robot robot(Driving(DriveMode::kStraight), Vehicle(), SceneConfig{}, walls);
+  EXPECT_EQ(robot.nearest().object, kNoObject) << "it is more than 5 m away";
+
+  robot.AdvanceTo(30 * kSecond);
+
+  // The wall's face is at y = 1.0 m, the robot's left side at 0.2 m.
+  EXPECT_EQ(robot.nearest().object, kMapObject);
+  EXPECT_NEAR(robot.nearest().distance_m, 0.8, 1e-6);
+  EXPECT_TRUE(robot.contacts().empty());
+}
+
 TEST(Robot, RefusesAPathWithoutWaypoints) {
   RobotConfig config;
   config.drive = DriveMode::kPath;
