@@ -79,20 +79,15 @@ SimulatedBase::SimulatedBase(const core::RobotConfig& config,
 }
 
 void SimulatedBase::OnPermit(const drive_permit_t& message) {
-  const std::int64_t now_us = clock_.Now();
-  const std::int64_t repeated = robot_.gate().num_repeated_permits();
-  const std::int64_t foreign = robot_.gate().num_foreign_permits();
-  robot_.OnPermit({message.session,
-                   message.sequence,
-                   message.utime,
-                   message.valid_us,
-                   message.forward_mps,
-                   message.backward_mps,
-                   message.turn_left_radps,
-                   message.turn_right_radps},
-                  now_us);
-  const bool is_taken = repeated == robot_.gate().num_repeated_permits() &&
-                        foreign == robot_.gate().num_foreign_permits();
+  const bool is_taken = robot_.OnPermit({message.session,
+                                         message.sequence,
+                                         message.utime,
+                                         message.valid_us,
+                                         message.forward_mps,
+                                         message.backward_mps,
+                                         message.turn_left_radps,
+                                         message.turn_right_radps},
+                                        clock_.Now());
   if (is_taken) permit_ = message;
 }
 

@@ -23,11 +23,14 @@ class WorldClock {
   /// The world's time at a time of day.
   [[nodiscard]] std::int64_t TimeOf(std::int64_t utime) const { return utime - start_utime_; }
 
-  /// Follows a time of day that was set; true when it was. Differences below 2 ms are those of
-  /// reading two clocks.
+  /// Follows a time of day that was set; true when it was. Two clocks are never read at once: what
+  /// may be the time between two readings is no step.
   bool Follow() {
-    const std::int64_t step_us = runtime_.UtimeNow() - UtimeOf(Now());
-    if (std::abs(step_us) < kLeastStep_us) return false;
+    const std::int64_t before_us = Now();
+    const std::int64_t utime = runtime_.UtimeNow();
+    const std::int64_t after_us = Now();
+    const std::int64_t step_us = utime - UtimeOf(before_us);
+    if (std::abs(step_us) < kLeastStep_us + (after_us - before_us)) return false;
     start_utime_ += step_us;
     return true;
   }
