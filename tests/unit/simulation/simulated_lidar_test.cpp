@@ -242,7 +242,8 @@ double CoverageAfter(std::int64_t shots) {
   const auto most = static_cast<long>(kRadius_deg / kCell_deg) + 10;
   for (long a = -most; a <= most; ++a) {
     for (long e = -most; e <= most; ++e) {
-      const double cosine = std::cos(a * kCell_deg / kDegrees) * std::cos(e * kCell_deg / kDegrees);
+      const double cosine = std::cos(static_cast<double>(a) * kCell_deg / kDegrees) *
+                            std::cos(static_cast<double>(e) * kCell_deg / kDegrees);
       if (std::acos(cosine) * kDegrees <= kRadius_deg) inside.emplace(a, e);
     }
   }
