@@ -50,7 +50,8 @@ void MapWallCaster::MeasureClearance(const OccupancyGrid& grid) {
   const int height = geometry_.height;
   clearance_.resize(grid.cells.size());
   std::transform(grid.cells.begin(), grid.cells.end(), clearance_.begin(), [](std::uint8_t cell) {
-    return cell == OccupancyGrid::kOccupied ? std::uint8_t{0} : kFar;
+    const bool is_wall = cell >= MapWalls::kLeastWall && cell != OccupancyGrid::kUnknown;
+    return is_wall ? std::uint8_t{0} : kFar;
   });
   const auto relax = [&](int column, int row, int d_column, int d_row) {
     const CellIndex other{column + d_column, row + d_row};
@@ -76,8 +77,6 @@ void MapWallCaster::MeasureClearance(const OccupancyGrid& grid) {
 std::optional<RayHit> MapWallCaster::Cast(const Eigen::Vector3d& origin_map,
                                           const Eigen::Vector3d& direction_map,
                                           double max_range_m) const {
-  const double cosine = std::cos(geometry_.origin_yaw_rad);
-  const double sine = std::sin(geometry_.origin_yaw_rad);
   const double x_m = origin_map.x() - geometry_.origin_x_m;
   const double y_m = origin_map.y() - geometry_.origin_y_m;
   const double scale = 1.0 / geometry_.resolution_m;
@@ -87,10 +86,10 @@ std::optional<RayHit> MapWallCaster::Cast(const Eigen::Vector3d& origin_map,
                 .cell = 0,
                 .step = direction > 0.0 ? 1 : (direction < 0.0 ? -1 : 0)};
   };
-  Axis column =
-      make_axis(cosine * x_m + sine * y_m, cosine * direction_map.x() + sine * direction_map.y());
-  Axis row =
-      make_axis(cosine * y_m - sine * x_m, cosine * direction_map.y() - sine * direction_map.x());
+  Axis column = make_axis(cosine_ * x_m + sine_ * y_m,
+                          cosine_ * direction_map.x() + sine_ * direction_map.y());
+  Axis row = make_axis(cosine_ * y_m - sine_ * x_m,
+                       cosine_ * direction_map.y() - sine_ * direction_map.x());
   double range_m = 0.0;
   double last_m = max_range_m;
   Clip(column.origin, column.speed, geometry_.width, range_m, last_m);

@@ -14,7 +14,9 @@ namespace clearway::core {
 
 /// What is extruded from a map.
 struct MapWalls {
-  OccupancyGrid grid;     ///< Its occupied cells become walls; unknown ones do not.
+  static constexpr std::uint8_t kLeastWall = 65;  ///< As LocalMap takes a cell for a hit.
+
+  OccupancyGrid grid;     ///< Cells from kLeastWall on become walls; unknown ones do not.
   double height_m = 2.5;  ///< From the floor up.
   double reflectivity = 0.6;
 };
@@ -38,6 +40,8 @@ class MapWallCaster {
   void MeasureClearance(const OccupancyGrid& grid);
 
   GridGeometry geometry_;
+  double cosine_;  // Of the grid's yaw.
+  double sine_;
   double height_m_;
   double reflectivity_;
   std::vector<std::uint8_t> clearance_;  // Cells to the nearest occupied one, at most 255.

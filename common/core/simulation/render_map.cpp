@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "common/core/simulation/scene_geometry.hpp"
@@ -88,10 +90,11 @@ GridGeometry GeometryFor(const std::vector<Shadow>& shadows, double resolution_m
     most = most.cwiseMax(shadow.center + half);
   }
   const auto cell = [&](double m) { return std::floor(m / resolution_m); };
+  constexpr double kMost = 1e8;  // A count of cells that still fits.
   const Vector2d from(cell(least.x() - kBorder_m), cell(least.y() - kBorder_m));
   const Vector2d to(cell(most.x() + kBorder_m), cell(most.y() + kBorder_m));
-  return {.width = static_cast<int>(to.x() - from.x()) + 1,
-          .height = static_cast<int>(to.y() - from.y()) + 1,
+  return {.width = static_cast<int>(std::min(to.x() - from.x() + 1.0, kMost)),
+          .height = static_cast<int>(std::min(to.y() - from.y() + 1.0, kMost)),
           .resolution_m = resolution_m,
           .origin_x_m = from.x() * resolution_m,
           .origin_y_m = from.y() * resolution_m};
@@ -134,6 +137,10 @@ OccupancyGrid RenderMap(const SceneConfig& scene, const RenderMapConfig& config)
   grid.geometry.resolution_m = config.resolution_m;
   if (shadows.empty()) return grid;
   grid.geometry = GeometryFor(shadows, config.resolution_m);
+  if (!grid.geometry.IsValid()) {
+    throw std::invalid_argument("the scene is too large for a map of " +
+                                std::to_string(config.resolution_m) + " m cells");
+  }
   grid.cells.assign(grid.geometry.num_cells(), OccupancyGrid::kUnknown);
   for (int row = 0; row < grid.geometry.height; ++row) {
     for (int column = 0; column < grid.geometry.width; ++column) {

@@ -36,7 +36,9 @@ struct RenderMapConfig {
 /// The map that a robot would have of a scene: all objects with on_map, where they stand at the
 /// start, whether they are there or not (a stale map shows what has vanished), and nothing else. A
 /// cell is occupied where a solid covers a part of it, free where the start can be reached from it,
-/// unknown elsewhere. Empty (0 x 0) when no object is on the map. O(cells * solids).
+/// unknown elsewhere; holes are not seen by who makes maps. Empty (0 x 0) when no object is on the
+/// map. Throws std::invalid_argument when it would have more than GridGeometry::kMaxCells cells.
+/// O(cells * solids).
 /// @pre config is sensible: positive resolution, min_height_m < max_height_m.
 [[nodiscard]] OccupancyGrid RenderMap(const SceneConfig& scene, const RenderMapConfig& config);
 

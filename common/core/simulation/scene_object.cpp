@@ -66,7 +66,7 @@ SceneMotion Follow(const std::vector<Leg>& legs,
 std::vector<std::string> SceneObject::Validate(const std::string& kind) const {
   std::vector<std::string> problems;
   const std::string who = kind + " \"" + name + "\": ";
-  if (vanish_s >= 0.0 && vanish_s <= std::max(appear_s, 0.0)) {
+  if (appear_s >= 0.0 && vanish_s >= 0.0 && vanish_s <= appear_s) {
     problems.push_back(who + "vanish_s must be later than appear_s, or -1 for never.");
   }
   if (!waypoints.empty() && speed_mps <= 0.0) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "common/core/simulation/mid70_pattern.hpp"
 #include "common/core/simulation/noise.hpp"
@@ -21,6 +22,7 @@ constexpr double kMirrorShare = 0.5;   // Of the light that comes back by way of
 constexpr double kSurfaceShare = 0.1;  // ...and from the mirror itself.
 constexpr double kLeave_m = 1e-6;      // A mirrored ray starts this far off the surface.
 constexpr double kBeamEdge_rad = 0.14 * std::numbers::pi / 180.0;
+constexpr double kBeamTop_rad = 0.015 * std::numbers::pi / 180.0;
 constexpr double kSecondEcho_m = 0.2;
 // A hair more than the pattern's own reach and the beam's edge.
 constexpr double kView_rad = kMid70MaxOffAxis_rad + 2.0 * kBeamEdge_rad;
@@ -79,7 +81,8 @@ SimulatedLidar::Return SimulatedLidar::Trace(const World& world,
   if (hit->material == Material::kGlass) {
     if (hit->incidence_cos >= kGlintCos) {
       hit->reflectivity = kGlintBrightness;
-      return Judged(*hit);
+      const Return glint = Judged(*hit);
+      if (glint.range_m > 0.0) return glint;
     }
     hit = world.Cast(direction_map, false);
     if (!hit) return {};
@@ -171,12 +174,19 @@ void SimulatedLidar::Fire(World& world,
     const auto counter = static_cast<std::uint64_t>(shot);
     shots[i].echoes = {EchoOf(found, direction_sensor, counter), {}};
     if (!is_dual || found.range_m <= 0.0) continue;
+    // The beam is 0.28 deg wide and 0.03 deg high: its upper corner.
     const Vector3d edge_sensor =
         (direction_sensor +
-         kBeamEdge_rad * Vector3d(-direction_sensor.y(), direction_sensor.x(), 0))
+         kBeamEdge_rad * Vector3d(-direction_sensor.y(), direction_sensor.x(), 0) +
+         kBeamTop_rad * Vector3d::UnitZ())
             .normalized();
     Return second = Trace(world, T_map_sensor.linear() * edge_sensor);
-    if (second.range_m <= found.range_m + kSecondEcho_m) continue;
+    if (second.range_m <= 0.0 || std::abs(second.range_m - found.range_m) <= kSecondEcho_m)
+      continue;
+    if (second.range_m < found.range_m) {
+      std::swap(second, found);
+      shots[i].echoes[0] = EchoOf(found, direction_sensor, counter);
+    }
     second.tag = static_cast<std::uint8_t>((second.tag & 0x0FU) | kSecondEchoTag);
     shots[i].echoes[1] = EchoOf(second, direction_sensor, counter | (1ULL << 62U));
   }

@@ -44,8 +44,10 @@ inline constexpr double kNearEcho_m = 1.5;
 /// them. Glass is passed through, but for a glint where it is met head-on. A glossy surface shows
 /// what it mirrors, as far behind it as the light went on, at half the intensity; where the mirror
 /// shows nothing, its own surface, dimly. In dust a shot returns at a random depth, by the way that
-/// it goes through it. The beam has no width except in dual mode, where a second ray at its edge
-/// (0.14 deg beside it) finds the second echo when it differs by more than 0.2 m.
+/// it goes through it. The beam has no width except in dual mode, where a second ray at its corner
+/// (0.14 deg beside and 0.015 deg above it) finds the second echo when it differs by more than 0.2
+/// m. First and strongest return are the same here: no shot has a weaker echo before a stronger
+/// one.
 class SimulatedLidar {
  public:
   SimulatedLidar(const SimulatedLidarConfig& config, std::uint64_t seed);

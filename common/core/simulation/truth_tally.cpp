@@ -28,12 +28,15 @@ void TruthTally::Add(const Eigen::Isometry3d& T_map_sensor,
   const Eigen::Vector3d up_sensor = 0.001 * T_map_sensor.linear().row(2).transpose();
   const double height_m = T_map_sensor.translation().z();
   for (const SimulatedShot& shot : shots) {
+    std::int32_t counted = kNoObject;  // Two echoes of one ray are one ray.
     for (const SimulatedEcho& echo : shot.echoes) {
-      if (echo.object < 0) continue;
+      const bool is_image = (echo.point_sensor.tag & kMirrorTag) != 0;
+      if (echo.object < 0 || echo.object == counted || is_image) continue;
       const livox::WirePoint& point = echo.point_sensor;
       const double z_m =
           height_m + up_sensor.dot(Eigen::Vector3d(point.x_mm, point.y_mm, point.z_mm));
       if (std::abs(z_m) <= config_.floor_tolerance_m) continue;
+      counted = echo.object;
       const auto object = static_cast<std::size_t>(echo.object);
       ++points[object];
       if (first_ray_us_[object] < 0) first_ray_us_[object] = time_us;

@@ -30,7 +30,7 @@ struct RayTally {
 
 /// Counts, for each object of a scene, the rays that showed it in each scan: what a detector could
 /// have known. Points are taken where they are without noise only as far as the echo tells, that is
-/// with it. O(echoes) a packet. Thread safety: none.
+/// with it; what a mirror shows is no ray on the object. O(echoes) a packet. Thread safety: none.
 class TruthTally {
  public:
   TruthTally(std::size_t num_objects, const TallyConfig& config);

@@ -69,6 +69,14 @@ Vector3d World::NormalAt(const Vector3d& point_map,
       least_m = off_m;
       normal = primitive.T_map_local.linear().col(axis);
     }
+    if (primitive.shape == Primitive::Shape::kWedge) {
+      const Vector3d slope =
+          Vector3d(-primitive.half_extents.z(), 0.0, primitive.half_extents.x()).normalized();
+      const double off_m = std::abs(slope.dot(local));
+      if (off_m > least_m) continue;
+      least_m = off_m;
+      normal = primitive.T_map_local.linear() * slope;
+    }
     if (primitive.shape != Primitive::Shape::kCylinder) continue;
     const double off_m = std::abs(local.head<2>().norm() - primitive.half_extents.x());
     if (off_m > least_m) continue;

@@ -57,6 +57,7 @@ TEST(RenderMapTest, AStaleMapShowsWhatHasVanished) {
   SceneConfig scene = Room();
   scene.boxes = {BoxAt("gone", 3.0, true)};
   scene.boxes[0].object.vanish_s = 0.0;
+  ASSERT_TRUE(scene.boxes[0].Validate().empty());
 
   EXPECT_EQ(CellAt(RenderMap(scene, {}), 3.0, 2.0), OccupancyGrid::kOccupied);
 }
