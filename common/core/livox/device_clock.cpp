@@ -106,8 +106,9 @@ bool DeviceClock::IsUsable(const Observation& seen) const {
   const DelayEnvelope::Sample sample = ToSample(seen);
   const double above_ns = static_cast<double>(sample.offset_ns) - envelope_.At(sample.stamp_ns);
   const std::int64_t ahead_ns = Difference(seen.device_ns, newest_.device_ns);
-  if (!is_settled_) return ahead_ns >= -kStep_ns && std::abs(above_ns) <= kMaxSettlingError_ns;
-  return ahead_ns >= -kMaxLate_ns && above_ns >= static_cast<double>(-kStep_ns);
+  if (ahead_ns < -kMaxLate_ns) return false;
+  if (!is_settled_) return std::abs(above_ns) <= kMaxSettlingError_ns;
+  return above_ns >= static_cast<double>(-kStep_ns);
 }
 
 bool DeviceClock::ConfirmsJump(const Observation& seen) {
@@ -134,10 +135,13 @@ bool DeviceClock::ConfirmsJump(const Observation& seen) {
 ClockEvent DeviceClock::NameJump(const Observation& seen) const {
   if (IsOtherClock(seen)) return ClockEvent::kSourceChanged;
   const bool counts_from_power_on = !HasAbsoluteTime(seen.type) && seen.type != TimestampType::kPps;
-  // Also forward: it runs for less time than nothing was heard of it.
-  const bool is_young = seen.device_ns <= static_cast<std::uint64_t>(std::max<std::int64_t>(
-                                              0, seen.arrival_ns - newest_.arrival_ns));
-  const bool went_back = Difference(seen.device_ns, newest_.device_ns) < -kStep_ns;
+  const std::int64_t ahead_ns = Difference(seen.device_ns, newest_.device_ns);
+  // Also forward: it runs for less time than nothing was heard of it. Where it just goes on, the
+  // host's clock was set.
+  const std::int64_t silence_ns = std::max<std::int64_t>(0, seen.arrival_ns - newest_.arrival_ns);
+  const bool is_young = seen.device_ns <= static_cast<std::uint64_t>(silence_ns) &&
+                        (ahead_ns > kMaxLate_ns || ahead_ns < -kMaxLate_ns);
+  const bool went_back = ahead_ns < -kStep_ns;
   return counts_from_power_on && (went_back || is_young) ? ClockEvent::kReset
                                                          : ClockEvent::kStepped;
 }
