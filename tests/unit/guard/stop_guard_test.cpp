@@ -12,7 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/guard/count_allocations.hpp"
+#include "tests/support/count_allocations.hpp"
 #include "tests/unit/scan/visit_check.hpp"
 
 namespace clearway::core {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/unit/guard/count_allocations.hpp"
+#include "tests/support/count_allocations.hpp"
 
 #include <atomic>
 #include <cstdlib>
@@ -16,6 +16,10 @@ void* operator new(std::size_t size) {
 }
 void* operator new[](std::size_t size) {
   return operator new(size);
+}
+void* operator new(std::size_t size, const std::nothrow_t& /*tag*/) noexcept {
+  ++num_allocations;
+  return std::malloc(size);
 }
 void operator delete(void* memory) noexcept {
   std::free(memory);
