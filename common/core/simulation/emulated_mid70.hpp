@@ -35,7 +35,7 @@ struct EmulatedMid70Memory {
   Ipv4 gateway = kAnyIpv4;
   bool has_static_ip = true;
   livox::ReturnMode return_mode = livox::ReturnMode::kFirst;
-  livox::Extrinsic extrinsic;
+  livox::Extrinsic extrinsic = {};
   std::uint8_t slot = 1;  ///< Parameter 3, 1 to 9.
 };
 

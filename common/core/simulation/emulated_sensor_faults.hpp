@@ -22,7 +22,7 @@ inline constexpr std::array<std::pair<const char*, JitterShape>, 2> kJitterShape
 
 /// A bad network between a sensor and its host. XML element: <simulator><mid70><network_fault>.
 struct NetworkFaultConfig {
-  ErrorTimes times;
+  ErrorTimes times = {};
   double loss = 0.0;
   double duplicates = 0.0;
   double reorder = 0.0;
@@ -75,7 +75,7 @@ inline constexpr std::array<std::pair<const char*, Silenced>, 3> kSilencedNames{
 
 /// A sensor that is not heard. XML element: <simulator><mid70><silence>.
 struct SilenceConfig {
-  ErrorTimes times;
+  ErrorTimes times = {};
   Silenced what = Silenced::kAll;
 
   template <typename Self, typename Visitor>
@@ -92,7 +92,7 @@ struct SilenceConfig {
 
 /// A sensor without power. XML element: <simulator><mid70><power_cut>.
 struct PowerCutConfig {
-  ErrorTimes times;
+  ErrorTimes times = {};
 
   template <typename Self, typename Visitor>
   static void Visit(Self& self, Visitor& visitor) {
@@ -138,7 +138,7 @@ inline constexpr std::array<std::pair<const char*, livox::Severity>, 3> kSeverit
 
 /// What a sensor reports of itself. XML element: <simulator><mid70><status_fault>.
 struct StatusFaultConfig {
-  ErrorTimes times;
+  ErrorTimes times = {};
   livox::Severity temperature = livox::Severity::kOk;
   livox::Severity voltage = livox::Severity::kOk;
   livox::Severity motor = livox::Severity::kOk;
@@ -183,7 +183,7 @@ struct StatusFaultConfig {
 /// A sensor that does not hear its source of time. XML element:
 /// <simulator><mid70><time_sync_loss>.
 struct TimeSyncLossConfig {
-  ErrorTimes times;
+  ErrorTimes times = {};
 
   template <typename Self, typename Visitor>
   static void Visit(Self& self, Visitor& visitor) {
