@@ -48,8 +48,10 @@ class EmulatedSensorTest : public testing::Test {
         seed,
         runtime_,
         sensor_side_,
-        [this](
-            std::int64_t first_shot, std::int64_t time_us, std::span<core::SimulatedShot> shots) {
+        [this](std::int64_t first_shot,
+               std::int64_t time_us,
+               core::livox::ReturnMode,
+               std::span<core::SimulatedShot> shots) {
           fired_.push_back({first_shot, time_us, shots.size()});
           for (std::size_t i = 0; i < shots.size(); ++i) {
             const auto shot = static_cast<std::int32_t>(first_shot) + static_cast<std::int32_t>(i);
@@ -365,7 +367,7 @@ TEST_F(EmulatedSensorTest, TheSameSeedSendsTheSameBytes) {
     net::MemoryHost near(wire, {kHostIp});
     net::MemoryHost far(wire, {kSensorIp});
     SensorHost host(near, kHostIp);
-    const EmulatedSensor sensor(config, seed, runtime, far, [](auto, auto, auto) {});
+    const EmulatedSensor sensor(config, seed, runtime, far, [](auto, auto, auto, auto) {});
     runtime.RunUntil(kStart_utime + 3'000'000);
     std::vector<core::livox::Bytes> bytes;
     for (const auto& packet : host.packets) bytes.push_back(packet.bytes);
@@ -426,7 +428,7 @@ class LateRuntime final : public process::Runtime {
 
 TEST_F(EmulatedSensorTest, CatchesUpWith50MillisecondsAndSkipsAndCountsTheRest) {
   LateRuntime late(runtime_);
-  EmulatedSensor sensor(config_, 1, late, sensor_side_, [](auto, auto, auto) {});
+  EmulatedSensor sensor(config_, 1, late, sensor_side_, [](auto, auto, auto, auto) {});
   RunTo(2.0);
 
   late.late_us = 30'000;
