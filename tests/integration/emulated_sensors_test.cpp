@@ -60,7 +60,7 @@ class EmulatedSensorsTest : public testing::Test {
   }
 
   // A driver for `count` sensors, and their configurations.
-  void SetUp(std::size_t count) {
+  void PrepareDriver(std::size_t count) {
     core::livox::DriverConfig driver;
     driver.lidars.clear();
     vehicle_.sensors.clear();
@@ -145,7 +145,7 @@ class EmulatedSensorsTest : public testing::Test {
 };
 
 TEST_F(EmulatedSensorsTest, TwentyRestartsGiveDataAgainWithin3SecondsOnTheSamePorts) {
-  SetUp(1);
+  PrepareDriver(1);
   double longest_s = 0.0;
   for (int life = 0; life < 20; ++life) {
     first_broadcast_s_.reset();
@@ -166,7 +166,7 @@ TEST_F(EmulatedSensorsTest, TwentyRestartsGiveDataAgainWithin3SecondsOnTheSamePo
 }
 
 TEST_F(EmulatedSensorsTest, FourSensorsAtOnceGiveAllTheirShotsEachUnderItsName) {
-  SetUp(kMaxSensors);
+  PrepareDriver(kMaxSensors);
   for (std::size_t i = 0; i < kMaxSensors; ++i) PowerOn(i);
 
   RunTo(6.0);
@@ -191,7 +191,7 @@ class EmulatedSensorsLossTest : public EmulatedSensorsTest,
                                 public testing::WithParamInterface<Loss> {};
 
 TEST_P(EmulatedSensorsLossTest, TheDriverCountsWhatTheNetworkDid) {
-  SetUp(1);
+  PrepareDriver(1);
   core::NetworkFaultConfig fault;
   fault.times = {.from_s = 3.0, .to_s = 13.0};
   fault.loss = GetParam().share;
@@ -232,7 +232,7 @@ class EmulatedSensorsClockTest : public EmulatedSensorsTest,
 
 // Truth: shot n of the pattern leaves when the sensor's oscillator has counted n * 10 us.
 TEST_P(EmulatedSensorsClockTest, PointsKeepTheirTimeWithinAMillisecondDespiteDriftAndJitter) {
-  SetUp(1);
+  PrepareDriver(1);
   sensors_[0].clock_drift_ppm = GetParam();
   core::NetworkFaultConfig fault;
   fault.jitter_us = 5'000;
@@ -269,7 +269,7 @@ INSTANTIATE_TEST_SUITE_P(Drifts, EmulatedSensorsClockTest, testing::Values(-50.0
 
 TEST_F(EmulatedSensorsTest, SurvivesPowerCutSilenceAndAnotherAddress) {
   using core::Silenced;
-  SetUp(1);
+  PrepareDriver(1);
   sensors_[0].power_cuts = {{.times = {.from_s = 5.0, .to_s = 7.0}}};
   sensors_[0].silences = {{.times = {.from_s = 15.0, .to_s = 20.0}, .what = Silenced::kAll},
                           {.times = {.from_s = 30.0, .to_s = 35.0}, .what = Silenced::kHeartbeats}};
@@ -291,7 +291,7 @@ class EmulatedSensorsControlLossTest : public EmulatedSensorsTest,
 
 // A command and its answer both get through with (1 - share)^2.
 TEST_P(EmulatedSensorsControlLossTest, ConnectsAndSamplesThroughLossOfCommandsAndAnswers) {
-  SetUp(1);
+  PrepareDriver(1);
   core::NetworkFaultConfig fault;
   fault.control_loss = GetParam();
   sensors_[0].network_faults = {fault};
@@ -308,7 +308,7 @@ INSTANTIATE_TEST_SUITE_P(Shares,
                          testing::Values(0.1, 0.3, 0.4, 0.5));
 
 TEST_F(EmulatedSensorsTest, ASecondHostThatTakesTheSensorIsFoughtOffOrTold) {
-  SetUp(1);
+  PrepareDriver(1);
   PowerOn(0);
   RunTo(4.0);
   net::MemoryHost thief(wire_, {kHostIp + 1});
