@@ -261,7 +261,7 @@ TEST_P(EmulatedSensorsClockTest, PointsKeepTheirTimeWithinAMillisecondDespiteDri
     }
   }
   EXPECT_GT(points, 5'000'000);
-  EXPECT_LT(worst_us, 1'000.0 + 960.0) << "a packet leaves with its last shot";
+  EXPECT_LT(worst_us, 1e3);
   RecordProperty("worst_us", static_cast<int>(worst_us));
 }
 
