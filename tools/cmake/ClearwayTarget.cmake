@@ -13,7 +13,7 @@ target_include_directories(clearway_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_link_options(clearway_options INTERFACE -Wl,--as-needed)
 if(CLEARWAY_SANITIZE)
   target_compile_options(clearway_options INTERFACE
-    -fsanitize=${CLEARWAY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g)
+    -fsanitize=${CLEARWAY_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g1)
   target_link_options(clearway_options INTERFACE -fsanitize=${CLEARWAY_SANITIZE})
 endif()
 
@@ -44,12 +44,19 @@ endfunction()
 add_custom_target(programs)
 
 # What nearly every test includes, compiled once; preset dev does without, so that no test leans on
-# what others include. Tests themselves are not optimised: what they test is.
-function(clearway_test_options name)
+# what others include. Tests themselves are hardly optimised, with sanitizers not at all: what they
+# test is. Optimised ones do without the header, whose flags they do not share.
+function(clearway_test_options name optimised)
   # One set of flags for all: some libraries bring -pthread along, which a header's must match.
   # GCC 12 at -O1 sees bounds overrun inside its own std::string (as in GCC bug 105651).
-  set(flags -pthread $<$<CONFIG:Release,RelWithDebInfo>:-O1>
+  set(flags -pthread $<$<CONFIG:Release>:-O1>
       $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-stringop-overflow>)
+  if(CLEARWAY_SANITIZE AND optimised)
+    target_compile_options(${name} PRIVATE -pthread -O1)
+    return()
+  elseif(CLEARWAY_SANITIZE)
+    list(APPEND flags -O0)
+  endif()
   target_compile_options(${name} PRIVATE ${flags})
   if(NOT CLEARWAY_TEST_PCH)
     return()
@@ -57,22 +64,23 @@ function(clearway_test_options name)
   if(NOT TARGET clearway_test_pch)
     file(WRITE ${PROJECT_BINARY_DIR}/test_pch.cpp "// Holds the tests' precompiled header.\n")
     add_library(clearway_test_pch OBJECT ${PROJECT_BINARY_DIR}/test_pch.cpp)
-    target_link_libraries(clearway_test_pch PRIVATE clearway_options GTest::gmock)
+    target_link_libraries(clearway_test_pch PRIVATE clearway_options Eigen3::Eigen GTest::gmock)
     target_compile_options(clearway_test_pch PRIVATE ${flags})
     target_precompile_headers(clearway_test_pch PRIVATE
-      <algorithm> <functional> <map> <optional> <string> <vector> <gmock/gmock.h> <gtest/gtest.h>)
+      <algorithm> <filesystem> <fstream> <functional> <map> <memory> <optional> <random> <sstream>
+      <string> <vector> <Eigen/Geometry> <gmock/gmock.h> <gtest/gtest.h>)
   endif()
   target_precompile_headers(${name} REUSE_FROM clearway_test_pch)
 endfunction()
 
-# clearway_test(name [NETWORK] SOURCES ... LINK libs... [TIMEOUT s] [LABELS ...]): one gtest
-# program, one CTest entry. NETWORK runs it in a network namespace of its own, where multicast
-# goes over loopback.
+# clearway_test(name [NETWORK] [COMPUTES] SOURCES ... LINK libs... [TIMEOUT s] [LABELS ...]): one
+# gtest program, one CTest entry. NETWORK runs it in a network namespace of its own, where multicast
+# goes over loopback. COMPUTES optimises it with sanitizers too, for the sake of its own loops.
 function(clearway_test name)
-  cmake_parse_arguments(ARG "NETWORK" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "NETWORK;COMPUTES" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE clearway_options ${ARG_LINK} GTest::gmock GTest::gtest_main)
-  clearway_test_options(${name})
+  clearway_test_options(${name} ${ARG_COMPUTES})
   set_target_properties(${name} PROPERTIES
                         RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
   if(ARG_NETWORK)
