@@ -40,7 +40,11 @@ void Clip(double origin, double speed, double size, double& from_m, double& to_m
 }  // namespace
 
 MapWallCaster::MapWallCaster(const MapWalls& walls)
-    : geometry_(walls.grid.geometry), height_m_(walls.height_m), reflectivity_(walls.reflectivity) {
+    : geometry_(walls.grid.geometry),
+      cosine_(std::cos(walls.grid.geometry.origin_yaw_rad)),
+      sine_(std::sin(walls.grid.geometry.origin_yaw_rad)),
+      height_m_(walls.height_m),
+      reflectivity_(walls.reflectivity) {
   MeasureClearance(walls.grid);
 }
 
