@@ -110,6 +110,8 @@ CommandView Sheriff::ViewOf(const KnownCommand& command, std::int64_t now_us) co
   if (copy.reported == nullptr) return view;
   const CommandReport& report = copy.reported->report;
   FillIn(view, report);
+  // What ended where it was moved away from says nothing about the run that is wanted now.
+  if (copy.deputy == elsewhere && elsewhere != nullptr) view.run_id = 0;
   view.deaths = copy.reported->deaths;
   view.is_settled = IsSettled(command, copy, now_us);
   if (report.pid != 0 && report.pid == command.old_exec_pid) {
