@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "common/process/log.hpp"
+#include "processes/livox_driver/answer_address.hpp"
 
 namespace clearway {
 namespace {
@@ -14,12 +15,12 @@ namespace {
 using core::Ipv4;
 using core::livox::Broadcast;
 using core::livox::CommandCode;
-using core::livox::DeviceType;
 using core::livox::LinkEvent;
 using core::livox::LinkState;
 
 constexpr std::int64_t kTick_us = 5'000;
-constexpr std::size_t kMaxHeard = 32;  // Announcers beyond that are not remembered.
+// How often this host's own addresses are looked at.
+constexpr std::int64_t kRenew_us = 1'000'000;
 
 core::livox::Extrinsic ExtrinsicOf(const core::SensorConfig& sensor) {
   constexpr double kDegrees = 180.0 / std::numbers::pi;
@@ -66,7 +67,7 @@ LivoxDriverProcess::LivoxDriverProcess(const core::livox::DriverConfig& config,
                                        const core::VehicleConfig& vehicle,
                                        process::Node& node,
                                        net::Network& network)
-    : config_(config), node_(node), network_(network), started_us_(NowUs()) {
+    : config_(config), node_(node), network_(network), heard_(config.lidars), started_us_(NowUs()) {
   CheckSensors(config, vehicle);
   for (const core::livox::LidarConfig& lidar : config_.lidars) {
     const auto sensor = static_cast<std::size_t>(*vehicle.FindSensor(lidar.sensor));
@@ -119,78 +120,31 @@ void LivoxDriverProcess::OnBroadcasts(std::span<const net::Datagram> datagrams) 
 }
 
 void LivoxDriverProcess::OnBroadcast(const core::Endpoint& from, const Broadcast& body) {
-  const auto known = heard_.find(body.broadcast_code);
-  if (known == heard_.end() && heard_.size() >= kMaxHeard) return;
-  Heard& heard = heard_[body.broadcast_code];
-  if (known == heard_.end()) {
+  const HeardSensors::Verdict verdict = heard_.Hear(body, from, NowUs());
+  if (verdict.is_new) {
     process::LogInfo("heard a " + std::string(core::livox::DeviceName(body.type)) + ", " +
                      body.broadcast_code + " at " + core::ToString(from.ip));
   }
-  heard = {.type = body.type, .ip = from.ip, .last_us = NowUs()};
-  const std::size_t index = LidarFor(body, from.ip);
-  if (index == lidars_.size()) return;
-  Lidar& lidar = *lidars_[index];
-  const std::optional<Ipv4> host_ip = HostFor(from.ip, lidar.subnet_problem);
-  if (!host_ip) return;
-  lidar.link.OnBroadcast(from, *host_ip, NowUs());
+  if (verdict.lidar) Approach(*lidars_[*verdict.lidar], from);
+}
+
+std::vector<net::Interface> LivoxDriverProcess::OwnInterfaces() const {
+  try {
+    return network_.Interfaces();
+  } catch (const net::NetworkError& error) {
+    // Once running, nothing ends a driver; the problem shows as "no address".
+    process::LogWarning(error.what());
+    return {};
+  }
+}
+
+// The sensor has announced itself from there.
+void LivoxDriverProcess::Approach(Lidar& lidar, const core::Endpoint& sensor) {
+  const AnswerAddress answer = AnswerAddressFor(sensor.ip, config_.host_ip, OwnInterfaces());
+  lidar.address_problem = answer.problem;
+  if (!answer.ip) return;
+  lidar.link.OnBroadcast(sensor, *answer.ip, NowUs());
   Flush(lidar);
-}
-
-// Which lidar of the configuration this is; their number when it is none.
-std::size_t LivoxDriverProcess::LidarFor(const Broadcast& body, Ipv4 ip) const {
-  const auto find = [this](const auto& is_it) {
-    const auto found = std::find_if(
-        lidars_.begin(), lidars_.end(), [&](const auto& lidar) { return is_it(lidar->config); });
-    return static_cast<std::size_t>(found - lidars_.begin());
-  };
-  using core::livox::LidarConfig;
-  std::size_t index =
-      find([&](const LidarConfig& lidar) { return lidar.broadcast_code == body.broadcast_code; });
-  if (index < lidars_.size()) return index;
-  index = find([&](const LidarConfig& lidar) {
-    return lidar.broadcast_code.empty() && !lidar.ip.empty() && core::ParseIpv4(lidar.ip) == ip;
-  });
-  if (index < lidars_.size()) return index;
-  if (body.type != DeviceType::kMid70 || !IsOnlyUnclaimed(body.broadcast_code)) {
-    return lidars_.size();
-  }
-  return find(
-      [](const LidarConfig& lidar) { return lidar.broadcast_code.empty() && lidar.ip.empty(); });
-}
-
-bool LivoxDriverProcess::IsClaimed(const std::string& code, const Heard& heard) const {
-  return std::any_of(lidars_.begin(), lidars_.end(), [&](const auto& lidar) {
-    const core::livox::LidarConfig& config = lidar->config;
-    if (!config.broadcast_code.empty()) return config.broadcast_code == code;
-    return !config.ip.empty() && core::ParseIpv4(config.ip) == heard.ip;
-  });
-}
-
-// True when no other MID-70 that is heard could be meant as well.
-bool LivoxDriverProcess::IsOnlyUnclaimed(const std::string& code) const {
-  return std::none_of(heard_.begin(), heard_.end(), [&](const auto& entry) {
-    return entry.first != code && entry.second.type == DeviceType::kMid70 &&
-           NowUs() - entry.second.last_us < config_.lost_after_us &&
-           !IsClaimed(entry.first, entry.second);
-  });
-}
-
-std::optional<Ipv4> LivoxDriverProcess::HostFor(Ipv4 sensor, std::string& problem) const {
-  problem.clear();
-  if (!config_.host_ip.empty()) return core::ParseIpv4(config_.host_ip);
-  const std::vector<net::Interface> interfaces = network_.Interfaces();
-  const net::Interface* best = nullptr;
-  std::string own;
-  for (const net::Interface& interface : interfaces) {
-    own += (own.empty() ? "" : ", ") + core::ToString(interface.ip) + " (" + interface.name + ')';
-    if (interface.Reaches(sensor) && (best == nullptr || interface.mask > best->mask)) {
-      best = &interface;
-    }
-  }
-  if (best != nullptr) return best->ip;
-  problem = core::ToString(sensor) + " is in another subnet than this host, which has " + own +
-            ": give this host an address there, or set livox_driver.host_ip";
-  return std::nullopt;
 }
 
 void LivoxDriverProcess::OnCommands(std::span<const net::Datagram> datagrams) {
@@ -228,21 +182,35 @@ void LivoxDriverProcess::OnData(std::span<const net::Datagram> datagrams) {
     lidar.link.OnData(*status_code, NowUs());
     if (tap_) tap_(index, datagram);
   }
-  const std::int64_t now_utime = node_.runtime().UtimeNow();
-  for (const auto& lidar : lidars_) lidar->output.PublishDue(now_utime);
+  // By the arrival of the newest, not by the clock: after a while without the processor more
+  // packets wait in the socket, and no slice may be judged before they are seen.
+  for (const auto& lidar : lidars_) lidar->output.PublishDue(datagrams.back().arrival_utime);
 }
 
-void LivoxDriverProcess::OfferKnownAddress(Lidar& lidar) {
-  const std::optional<Ipv4> ip = core::ParseIpv4(lidar.config.ip);
-  if (!ip || lidar.link.state() != LinkState::kSearching) return;
-  const std::optional<Ipv4> host_ip = HostFor(*ip, lidar.subnet_problem);
-  if (host_ip) lidar.link.Offer({*ip, core::livox::kDevicePort}, *host_ip, NowUs());
+// Sensors with a known address are asked without a broadcast, and whoever is asked hears where this
+// host is now.
+void LivoxDriverProcess::RenewAddresses() {
+  const std::vector<net::Interface> interfaces = OwnInterfaces();
+  for (const auto& lidar : lidars_) {
+    const auto state = lidar->link.state();
+    const bool is_asked = state == LinkState::kHandshaking;
+    const std::optional<Ipv4> ip =
+        is_asked ? lidar->link.address()->ip : core::ParseIpv4(lidar->config.ip);
+    if (!ip || (state != LinkState::kSearching && !is_asked)) continue;
+    const AnswerAddress answer = AnswerAddressFor(*ip, config_.host_ip, interfaces);
+    lidar->address_problem = answer.problem;
+    if (answer.ip) lidar->link.Offer({*ip, core::livox::kDevicePort}, *answer.ip, NowUs());
+  }
 }
 
 void LivoxDriverProcess::Tick() {
+  if (addresses_renewed_us_ == 0 || NowUs() - addresses_renewed_us_ >= kRenew_us) {
+    addresses_renewed_us_ = NowUs();
+    RenewAddresses();
+  }
+  if (const auto choice = heard_.Choose(NowUs())) Approach(*lidars_[choice->lidar], choice->from);
   const std::int64_t now_utime = node_.runtime().UtimeNow();
   for (const auto& lidar : lidars_) {
-    OfferKnownAddress(*lidar);
     lidar->link.Advance(NowUs());
     Flush(*lidar);
     lidar->output.PublishDue(now_utime);

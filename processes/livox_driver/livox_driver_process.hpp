@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 #include "common/core/livox/sensor_link.hpp"
 #include "common/core/vehicle.hpp"
 #include "common/net/datagrams.hpp"
+#include "processes/livox_driver/heard_sensors.hpp"
 #include "processes/livox_driver/lidar_output.hpp"
 
 namespace clearway {
@@ -56,36 +56,29 @@ class LivoxDriverProcess {
     core::livox::LidarConfig config;
     core::livox::SensorLink link;
     LidarOutput output;
-    std::string subnet_problem;  // Why it cannot be answered from here; empty: it can.
+    std::string address_problem;  // Why it cannot answer to this host; empty: it can.
   };
-  /// Somebody who announced himself.
-  struct Heard {
-    core::livox::DeviceType type = core::livox::DeviceType::kMid70;
-    core::Ipv4 ip = core::kAnyIpv4;
-    std::int64_t last_us = 0;
-  };
-
   void OnBroadcasts(std::span<const net::Datagram> datagrams);
   void OnBroadcast(const core::Endpoint& from, const core::livox::Broadcast& body);
   void OnCommands(std::span<const net::Datagram> datagrams);
   void OnData(std::span<const net::Datagram> datagrams);
-  [[nodiscard]] std::size_t LidarFor(const core::livox::Broadcast& body, core::Ipv4 ip) const;
-  [[nodiscard]] bool IsOnlyUnclaimed(const std::string& code) const;
-  [[nodiscard]] bool IsClaimed(const std::string& code, const Heard& heard) const;
-  [[nodiscard]] std::optional<core::Ipv4> HostFor(core::Ipv4 sensor, std::string& problem) const;
-  void OfferKnownAddress(Lidar& lidar);
+  void Approach(Lidar& lidar, const core::Endpoint& sensor);
+  [[nodiscard]] std::vector<net::Interface> OwnInterfaces() const;
+  void RenewAddresses();
   void Tick();
   void Flush(Lidar& lidar);
   void Refresh();
-  [[nodiscard]] std::string SearchText(const Lidar& lidar) const;
-  [[nodiscard]] std::string UnknownText() const;
+  [[nodiscard]] core::livox::LinkReport ReportOf(std::size_t index) const;
+  [[nodiscard]] core::livox::LinkReport SearchReport(std::size_t index) const;
+  void SetCounters();
   [[nodiscard]] std::int64_t NowUs() const { return node_.runtime().MonotonicUs(); }
 
   core::livox::DriverConfig config_;
   process::Node& node_;
   net::Network& network_;
   std::vector<std::unique_ptr<Lidar>> lidars_;
-  std::map<std::string, Heard> heard_;  // By broadcast code.
+  HeardSensors heard_;
+  std::int64_t addresses_renewed_us_ = 0;
   std::array<std::int64_t, core::livox::kNumFrameDefects> frame_defects_{};
   std::int64_t foreign_frames_ = 0;
   std::int64_t foreign_packets_ = 0;

@@ -319,6 +319,9 @@ std::optional<std::int64_t> SensorLink::NextDue() const {
   if (suspected_us_) due_us = std::min(due_us, *suspected_us_ + kDataGap_us);
   if (const std::optional<std::size_t> current = CurrentStep()) {
     due_us = std::min(due_us, steps_[*current].next_us);
+  } else if (is_sampling_) {
+    const std::int64_t data_us = std::max(sampling_since_us_, last_data_us_.value_or(0));
+    due_us = std::min(due_us, std::max(steps_[kSamplingStep].next_us, data_us + kNoData_us));
   }
   return due_us;
 }

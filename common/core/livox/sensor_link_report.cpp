@@ -11,7 +11,8 @@ namespace {
 constexpr int kWorthTelling = 3;  // Handshakes without an answer.
 constexpr std::int64_t kNoData_us = 1'000'000;
 constexpr std::int64_t kLongStart_us = 30'000'000;
-constexpr int kStolen = 2;  // Connections in a row that did not last.
+constexpr std::int64_t kHeard_us = 3'000'000;  // A broadcast comes each second.
+constexpr int kStolen = 2;                     // Connections in a row that did not last.
 
 std::string Join(const std::vector<std::string>& sentences) {
   std::string text;
@@ -59,6 +60,7 @@ LinkReport SensorLink::Report(std::int64_t now_us) const {
 LinkReport SensorLink::ReportHandshake(std::int64_t now_us) const {
   LinkReport report{.state = LinkState::kHandshaking, .health = Health::kWaiting, .text = {}};
   const std::string where = ToString(address_->ip);
+  const bool is_heard = last_broadcast_us_ && now_us - *last_broadcast_us_ < kHeard_us;
   if (handshake_refusal_) {
     report.health = Health::kFault;
     report.text = where + " refuses the handshake (result " + std::to_string(*handshake_refusal_) +
@@ -66,6 +68,11 @@ LinkReport SensorLink::ReportHandshake(std::int64_t now_us) const {
   } else if (short_connections_ >= kStolen) {
     report.health = Health::kFault;
     report.text = "connections to " + where + " do not last: another program or host takes it";
+  } else if (unanswered_handshakes_ >= kWorthTelling && is_heard) {
+    report.health = Health::kFault;
+    report.text = where +
+                  " announces itself, but its answers do not come: does a firewall stop UDP " +
+                  "to port " + std::to_string(config_.command_port) + "?";
   } else if (unanswered_handshakes_ >= kWorthTelling) {
     report.health = Health::kFault;
     report.text = where + " answers no handshake for " +
