@@ -18,7 +18,6 @@ constexpr std::int64_t kDataGap_us = 100'000;
 constexpr std::int64_t kSettled_us = 1'000'000;
 // Told to sample, it is told again when nothing has come for so long.
 constexpr std::int64_t kNoData_us = 1'000'000;
-constexpr std::int64_t kShortConnection_us = 10'000'000;
 constexpr int kMaxUnanswered = 10;
 constexpr int kMaxRefusals = 3;
 constexpr std::int64_t kAfterRefusal_us = 200'000;
@@ -223,7 +222,9 @@ void SensorLink::Connected(std::int64_t now_us) {
 
 void SensorLink::Reconnect(LinkEvent::Kind why, std::string text, std::int64_t now_us) {
   ++(why == LinkEvent::Kind::kLost ? counts_.losses : counts_.restarts);
-  short_connections_ = now_us - connected_us_ < kShortConnection_us ? short_connections_ + 1 : 0;
+  const bool is_short = now_us - connected_us_ < kShortConnection_us;
+  // A sensor that announces itself has nobody else.
+  short_connections_ = is_short && why == LinkEvent::Kind::kLost ? short_connections_ + 1 : 0;
   is_sampling_ = false;
   Tell(why, std::move(text));
   BeginHandshake(now_us);

@@ -24,7 +24,7 @@ struct LinkConfig {
   std::int64_t lost_after_us = 3'000'000;
   ReturnMode return_mode = ReturnMode::kFirst;
   Coordinates coordinates = Coordinates::kCartesian;
-  Extrinsic extrinsic;  ///< Where the sensor is mounted, as the sensor would keep it.
+  Extrinsic extrinsic{};  ///< Where the sensor is mounted, as the sensor would keep it.
   bool write_extrinsic = false;
 };
 
@@ -43,6 +43,8 @@ class SensorLink {
   static constexpr std::int64_t kHandshakeGap_us = 200'000;
   static constexpr std::int64_t kLongestBackOff_us = 5'000'000;
   static constexpr std::int64_t kSettingAgain_us = 10'000'000;
+  /// Several connections in a row that are shorter: somebody else takes the sensor.
+  static constexpr std::int64_t kShortConnection_us = 10'000'000;
 
   explicit SensorLink(const LinkConfig& config);
 

@@ -122,6 +122,10 @@ LinkReport SensorLink::ReportSampling(std::int64_t now_us) const {
     report.health = Health::kDegraded;
     sentences.push_back("another sensor with the same broadcast code is at " + ToString(*twin_));
   }
+  if (short_connections_ >= kStolen && now_us - connected_us_ < kShortConnection_us) {
+    report.health = Health::kDegraded;
+    sentences.emplace_back("its connections do not last: another program or host takes it");
+  }
   const std::string given_up = GivenUpText();
   if (!given_up.empty()) {
     report.health = Health::kDegraded;
